@@ -11,7 +11,7 @@ const NO_RIGID_BLOCKS: &str = "cannot be combined with free hinges: their impact
 /// Reads `[column.back]`.
 pub(super) fn read(table: &mut Table<'_>) -> ReadResult<BackWall> {
     let back = BackWall {
-        side: table.required("side", &one_of(Sway::ALL)),
+        side: table.read_required("side", &one_of(Sway::ALL)),
         height_m: table.optional("height_m", &within(&(0.0..=1e12))),
         rate_ratio: table.optional("restitution", &within(&(0.0..=1.0))),
     };
@@ -39,7 +39,7 @@ pub(super) fn place_before_wall(
         })
         .map_err(|error| wrong_wall(table, &error));
     if lands && back.height_m != Some(0.0) {
-        return Err(table.wrong_in(&["column"], "back", NO_RIGID_BLOCKS));
+        return Err(table.reject_in(&["column"], "back", NO_RIGID_BLOCKS));
     }
     held
 }
@@ -47,5 +47,5 @@ pub(super) fn place_before_wall(
 /// Records that a wall behind the column does not fit the column and its loads.
 pub(super) fn wrong_wall(table: &mut Table<'_>, error: &ArgumentError) -> FaultRecorded {
     let wrong = format!("does not fit: it must be {}", error.allowed);
-    table.wrong_in(&["column", "back"], error.argument, wrong)
+    table.reject_in(&["column", "back"], error.argument, wrong)
 }

@@ -168,16 +168,16 @@ impl ElasticTable {
                 let wrong = format!(
                     "is too long: half of what is stable with these joints is {most} s; leave it out, or give that"
                 );
-                Err(table.wrong_in(TABLE, "longest_step_s", wrong))
+                Err(table.reject_in(TABLE, "longest_step_s", wrong))
             }
             None if end_s > ElasticJoints::MOST_STEPS * step_s => {
                 let [step, end] = [step_s, end_s].map(plain);
                 let wrong = format!(
                     "makes steps of {step} s, too many for a motion of {end} s: give less damping, or a shorter [simulation] duration_s"
                 );
-                let by_ratio = table.gives_in(TABLE[0], "damping_ratio");
+                let by_ratio = table.has_key_in(TABLE[0], "damping_ratio");
                 let key = ["damping_time_s", "damping_ratio"][usize::from(by_ratio)];
-                Err(table.wrong_in(TABLE, key, wrong))
+                Err(table.reject_in(TABLE, key, wrong))
             }
             _ => Ok(()),
         }
@@ -273,7 +273,7 @@ impl ModelOptions for ElasticTable {
             .map_err(|error| {
                 let (name, value, allowed) = (error.argument, plain(error.value), error.allowed);
                 let wrong = format!("gives a joint `{name} = {value}`, which must be {allowed}");
-                table.wrong_in(TABLE, stiffness, wrong)
+                table.reject_in(TABLE, stiffness, wrong)
             })?
             .on_supports(site.supports.displacements());
         let Err(error) = joints.rest([0.0, -site.gravity_m_s2]) else {
@@ -284,7 +284,7 @@ impl ModelOptions for ElasticTable {
             RestError::Strength => "compressive_strength_mpa",
             RestError::Points => "contact_points",
             RestError::Tie(index) => {
-                return Err(table.wrong_element("tie", index, format!("does not fit: {error}")));
+                return Err(table.reject_element("tie", index, format!("does not fit: {error}")));
             }
             RestError::TieDuringMovement(tie, part) => {
                 let wrong = format!(
@@ -292,20 +292,20 @@ impl ModelOptions for ElasticTable {
                      movement",
                     1e2 * part
                 );
-                return Err(table.wrong_element("tie", tie, wrong));
+                return Err(table.reject_element("tie", tie, wrong));
             }
             RestError::Supports(part) => {
                 let wrong = format!(
                     "makes the arch fall at {:.2} % of this movement, with joints as soft as these: reduce it, or give stiffer joints",
                     1e2 * part
                 );
-                return Err(table.wrong("supports", wrong));
+                return Err(table.reject("supports", wrong));
             }
             // Too soft, or not found.
             _ => stiffness,
         };
         let wrong = format!("is not possible here: {error}");
-        Err(table.wrong_in(TABLE, key, wrong))
+        Err(table.reject_in(TABLE, key, wrong))
     }
 }
 

@@ -78,7 +78,7 @@ impl ModelOptions for RowOptions {
         match model(*self, structure, site) {
             Err(RowModelError::Friction(FrictionError::CannotStand(_))) => {
                 let wrong = "does not hold the structure on its moved springings: it would slide; give a larger one";
-                Err(table.wrong_in(&["free_hinges"], "friction_coefficient", wrong))
+                Err(table.reject_in(&["free_hinges"], "friction_coefficient", wrong))
             }
             // Other users of the row report its faults.
             _ => Ok(()),
@@ -98,7 +98,7 @@ fn read(table: &mut Table<'_>) -> ReadResult<RowOptions> {
     table.check_faultless()?;
     options
         .checked()
-        .map_err(|error| table.wrong(error.argument, format!("does not fit: {error}")))
+        .map_err(|error| table.reject(error.argument, format!("does not fit: {error}")))
 }
 
 /// Rejects a coefficient of friction with which the structure slides under its weight.

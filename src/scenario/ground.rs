@@ -186,9 +186,9 @@ impl PulseGround {
         let has_cycles = kind == Pulse::WindowedSine;
         let pulse = Self {
             kind,
-            amplitude_g: table.required("amplitude_g", &AMPLITUDE_G),
+            amplitude_g: table.read_required("amplitude_g", &AMPLITUDE_G),
             vertical_amplitude_g: table.or("vertical_amplitude_g", &AMPLITUDE_G, 0.0),
-            duration_s: table.required("duration_s", &DURATION_S),
+            duration_s: table.read_required("duration_s", &DURATION_S),
             start_s: table.or("start_s", &within(&(0.0..=1e6)), 0.0),
             gamma: (is_train && !has_cycles).then(|| table.or("gamma", &GAMMA, periods)),
             cycles: has_cycles.then(|| table.or("cycles", &CYCLES, periods)),
@@ -200,7 +200,7 @@ impl PulseGround {
         let motion = pulse.ground_motion(gravity_m_s2);
         match motion.free_fall_s(gravity_m_s2).filter(|_| !known.2) {
             None => Ok((pulse, motion)),
-            Some(time_s) => Err(table.wrong("vertical_amplitude_g", free_fall(time_s))),
+            Some(time_s) => Err(table.reject("vertical_amplitude_g", free_fall(time_s))),
         }
     }
 }

@@ -39,7 +39,7 @@ fn read(table: &mut Table<'_>) -> ReadResult<ImpactLaw> {
         *given = table.needed("restitution", &RESTITUTION, restitution);
     } else if restitution.is_some() {
         let wrong = format!("applies to model = \"prescribed\" only; the model here is {name:?}");
-        return Err(table.wrong("restitution", wrong));
+        return Err(table.reject("restitution", wrong));
     }
     Ok(ImpactLaw {
         model,
@@ -83,7 +83,7 @@ impl ModelOptions for ImpactLaw {
                 true => "restitution",
                 false => "restitution_factor",
             };
-            table.wrong_in(&["impact"], key, wrong)
+            table.reject_in(&["impact"], key, wrong)
         })
     }
 

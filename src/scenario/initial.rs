@@ -29,7 +29,7 @@ pub(super) fn read(
     kind: &ModelKind,
 ) -> ReadResult<(Initial, Option<Blow>)> {
     let mut initial = Initial {
-        sway: table.required("sway", &one_of(Sway::ALL)),
+        sway: table.read_required("sway", &one_of(Sway::ALL)),
         rotation_rad: table.or("rotation_rad", &ROTATION_RAD, 0.0),
         rate_rad_s: table.or("rate_rad_s", &within(&Initial::RATE_RAD_S), 0.0),
     };
@@ -115,7 +115,7 @@ pub(super) fn check_structure(
     let moved = "[supports]: on moved springings the structure stands on other hinges";
     for (holds, by) in [(has_ties, ties), (is_moved, moved)] {
         let wrong = format!("cannot be combined with {by}; leave one out");
-        table.refuse(holds && table.gives("initial"), "initial", wrong)?;
+        table.refuse(holds && table.has_key("initial"), "initial", wrong)?;
     }
     Ok(())
 }

@@ -51,9 +51,9 @@ impl RecordListing {
     /// Finds the files that the key `file` of an entry matches, and reads the keys that describe them. Keys of the outer table are defaults, if
     /// they apply to such files.
     pub(super) fn of_entry(table: &mut Table<'_>) -> Self {
-        let pattern = table.required(FILE, &text());
+        let pattern = table.read_required(FILE, &text());
         let format = format::inherit(table);
-        let given = Some(pattern).filter(|pattern| !pattern.is_empty() || table.gives(FILE));
+        let given = Some(pattern).filter(|pattern| !pattern.is_empty() || table.has_key(FILE));
         let patterns: Vec<_> = given.into_iter().collect();
         let files = list_files(table, (FILE, &patterns), format, BTreeSet::new());
         let formats = formats(&files);
@@ -67,11 +67,11 @@ impl RecordListing {
         let formats = formats(&self.files);
         let describes =
             |key| layout::describes(&self.layout, key, &formats) || table.is_default(key);
-        let given = layout::keys().filter(|key| table.gives(key));
+        let given = layout::keys().filter(|key| table.has_key(key));
         let vain: Vec<_> = given.filter(|key| !describes(key)).collect();
         for key in vain {
             let wrong = "has no effect: each entry [[suite.record]] gives its own value or cannot use it; leave it out";
-            table.wrong(key, wrong);
+            table.reject(key, wrong);
         }
         table.check_faultless()
     }
@@ -103,7 +103,7 @@ impl RecordListing {
                 .and_then(|series| accept(&series).map(|()| (key, series)));
             if let Err(wrong) = &series {
                 let wrong = format!("names {}, which {wrong}", shown(&file));
-                table.wrong_element(key, listed.element, wrong);
+                table.reject_element(key, listed.element, wrong);
             }
             series.ok()
         };
@@ -154,7 +154,7 @@ fn list_files(
     let mut found = BTreeMap::new();
     for (element, pattern) in patterns.iter().enumerate() {
         let files = table.files().find(pattern).map_err(|wrong| {
-            table.wrong_element(key, element, wrong);
+            table.reject_element(key, element, wrong);
         });
         for file in files.into_iter().flatten() {
             let path = table.files().path(&file);
@@ -168,7 +168,7 @@ fn list_files(
         let format = format.map_or_else(found, Ok);
         let format = format.map_err(|wrong| {
             let wrong = format!("names {}, which {wrong}", shown(&file));
-            table.wrong_element(key, element, wrong)
+            table.reject_element(key, element, wrong)
         });
         Some(ListedFile {
             key,

@@ -82,7 +82,7 @@ fn place_loads(
 ) -> ReadResult<Vec<PlacedLoad>> {
     let loads = loads.iter().enumerate();
     let placed = loads.map(|(index, load)| {
-        place(load).map_err(|(key, wrong)| table.wrong_in_element(("load", index), key, wrong))
+        place(load).map_err(|(key, wrong)| table.reject_in_element(("load", index), key, wrong))
     });
     placed.collect()
 }
@@ -107,7 +107,7 @@ pub(super) fn loaded_column(
                  a wider column",
                 side.name()
             );
-            table.wrong("load", wrong)
+            table.reject("load", wrong)
         }
         error => why_not(table, &error),
     })?;
@@ -134,7 +134,7 @@ pub(super) fn loaded_column(
                 None => "opens joints of the column under its own weight and its loads, without ground motion; give less load, or less eccentricity"
                     .to_owned(),
             };
-            return Err(table.wrong("load", wrong));
+            return Err(table.reject("load", wrong));
         }
     }
     Ok(column)
@@ -165,7 +165,7 @@ fn why_not(table: &mut Table<'_>, error: &ColumnLoadError) -> FaultRecorded {
     match error {
         ColumnLoadError::Load(index, error) => {
             let wrong = format!("is not allowed; must be {}", error.allowed);
-            table.wrong_in_element(("load", *index), error.argument, wrong)
+            table.reject_in_element(("load", *index), error.argument, wrong)
         }
         ColumnLoadError::Wall(error) => wrong_wall(table, error),
         ColumnLoadError::Overturns(side) => {
@@ -174,8 +174,8 @@ fn why_not(table: &mut Table<'_>, error: &ColumnLoadError) -> FaultRecorded {
                 "overturns the column to the {side}, without ground motion; give less thrust or eccentricity to that side, or a wider column, or a \
                  load further to the {other}"
             );
-            table.wrong("load", wrong)
+            table.reject("load", wrong)
         }
-        error => table.wrong("load", error),
+        error => table.reject("load", error),
     }
 }

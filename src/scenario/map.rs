@@ -167,7 +167,7 @@ impl Map {
         for (quantity, key) in own.chain(others) {
             if let Some(sequence) = Sequence::read(table, &key, quantity.range()) {
                 if let Some(wrong) = unsuited(quantity) {
-                    table.wrong(&key, wrong);
+                    table.reject(&key, wrong);
                 }
                 axes.push(Axis {
                     quantity,

@@ -54,9 +54,9 @@ pub(super) fn read_shapes(table: &mut Table<'_>) -> Option<MasonryShape> {
 /// Reads the dimensions and converts span and rise to those of the middle line.
 fn read_dimensions(table: &mut Table<'_>, is_pointed: bool) -> ReadResult<Dimensions> {
     let measured_at = table.or("measured_at", &one_of(MeasuredAt::ALL), MeasuredAt::Mean);
-    let mut span_m = table.required("span_m", &MAGNITUDE);
-    let mut rise_m = table.required("rise_m", &MAGNITUDE);
-    let thickness_m = table.required("thickness_m", &within(&(1e-6..=1e6)));
+    let mut span_m = table.read_required("span_m", &MAGNITUDE);
+    let mut rise_m = table.read_required("rise_m", &MAGNITUDE);
+    let thickness_m = table.read_required("thickness_m", &within(&(1e-6..=1e6)));
     if measured_at != MeasuredAt::Mean {
         let outwards_m = measured_at.to_mean() * thickness_m;
         // The arcs of a pointed arch keep their centres.
@@ -77,7 +77,7 @@ fn read_dimensions(table: &mut Table<'_>, is_pointed: bool) -> ReadResult<Dimens
         span_m,
         rise_m,
         thickness_m,
-        voussoirs: table.required("voussoirs", &VOUSSOIRS),
+        voussoirs: table.read_required("voussoirs", &VOUSSOIRS),
         material: Material {
             depth_m: table.or("depth_m", &MAGNITUDE, DEPTH_M),
             density_kg_m3: table.or("density_kg_m3", &MAGNITUDE, DENSITY_KG_M3),
@@ -86,7 +86,7 @@ fn read_dimensions(table: &mut Table<'_>, is_pointed: bool) -> ReadResult<Dimens
 }
 
 fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
-    let joints_file = table.required("joints", &text());
+    let joints_file = table.read_required("joints", &text());
     let outlines_file = table.optional("outlines", &text());
     let decimal = layout::decimal(table);
     let supports = table.or("supports", &one_of(Supports::ALL), Supports::Both);
@@ -141,7 +141,7 @@ fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
             faulty(&path, &LineFault { line, message })
         }
     };
-    Err(table.wrong("joints", wrong))
+    Err(table.reject("joints", wrong))
 }
 
 /// Reason why blocks do not form a row, with blocks and joints counted as in the files.
@@ -245,7 +245,7 @@ impl Additions {
             Self { fill: Some(_), .. } => "fill",
             _ => "load",
         };
-        table.wrong(key, wrong)
+        table.reject(key, wrong)
     }
 
     /// Makes the arch with its additions and ties. A fault is recorded if it cannot stand, unless that is `unproved`.
@@ -264,7 +264,7 @@ impl Additions {
         let is_tied = !ties.is_empty();
         let tied = masonry.with_ties(ties, gravity_m_s2);
         let mut masonry =
-            tied.map_err(|(index, error)| table.wrong_element("tie", index, error))?;
+            tied.map_err(|(index, error)| table.reject_element("tie", index, error))?;
         if !is_tied {
             masonry = masonry.with_constant_forces(gravity_m_s2);
         }
@@ -276,12 +276,12 @@ impl Additions {
         }
         match collapse_mechanism(&masonry.row) {
             Ok(None) => Ok(masonry),
-            Ok(Some(_)) if stands_without_ties(&masonry) => Err(table.wrong("tie", PULLS_OVER)),
+            Ok(Some(_)) if stands_without_ties(&masonry) => Err(table.reject("tie", PULLS_OVER)),
             Ok(Some(openings)) => {
                 let joints: Vec<_> = openings.iter().map(|o| o.joint.to_string()).collect();
                 Err(why_it_falls(table, &masonry, &joints.join(", ")))
             }
-            Err(error) => Err(table.wrong(key, format!("cannot be checked to stand: {error}"))),
+            Err(error) => Err(table.reject(key, format!("cannot be checked to stand: {error}"))),
         }
     }
 
@@ -294,31 +294,31 @@ impl Additions {
         let allowed = |error: &ArgumentError| format!("is not allowed; must be {}", error.allowed);
         match error {
             MasonryError::Shape(error) => {
-                table.wrong_in(&[shape], error.argument, allowed(error))
+                table.reject_in(&[shape], error.argument, allowed(error))
             }
             MasonryError::Pier(side, error) => {
                 let side = side.name();
                 let wrong = format!("of the {side} pier {}", allowed(error));
-                table.wrong_in(&["piers", side], error.argument, wrong)
+                table.reject_in(&["piers", side], error.argument, wrong)
             }
-            MasonryError::Fill(error) => table.wrong_in(&["fill"], error.argument, allowed(error)),
+            MasonryError::Fill(error) => table.reject_in(&["fill"], error.argument, allowed(error)),
             MasonryError::Load(index, error) => {
-                table.wrong_in_element(("load", *index), error.argument, allowed(error))
+                table.reject_in_element(("load", *index), error.argument, allowed(error))
             }
             MasonryError::NoPier(index, _) => {
                 let wrong = "names a pier that the arch does not have; give [piers], or leave `pier` out";
-                table.wrong_in_element(("load", *index), "pier", wrong)
+                table.reject_in_element(("load", *index), "pier", wrong)
             }
             MasonryError::Blocks => self.reject_all(
                 table,
                 "goes with arches that are given by their dimensions: give piers and fill of [blocks] as blocks",
             ),
-            MasonryError::Count(_) => table.wrong("piers", format!("makes {error}")),
-            MasonryError::Row(error) => table.wrong(
+            MasonryError::Count(_) => table.reject("piers", format!("makes {error}")),
+            MasonryError::Row(error) => table.reject(
                 shape,
                 format!("makes no row of blocks: {error}; give fewer voussoirs or a smaller thickness"),
             ),
-            _ => table.wrong(shape, error),
+            _ => table.reject(shape, error),
         }
     }
 }
@@ -336,7 +336,7 @@ fn read_piers(table: &mut Table<'_>) -> ReadResult<Piers> {
     let both = ["height_m", "width_m", "density_kg_m3"].map(|key| {
         let value = table.optional(key, &MAGNITUDE);
         // A wrong value must not be reported as missing.
-        value.or(table.gives(key).then_some(1.0))
+        value.or(table.has_key(key).then_some(1.0))
     });
     let blocks = table.optional("blocks", &PIER_BLOCKS);
     let pedestal = table.optional("pedestal", &switch());
@@ -360,9 +360,9 @@ fn read_piers(table: &mut Table<'_>) -> ReadResult<Piers> {
     for key in PIER_KEYS {
         let is_unused = ["left", "right"]
             .iter()
-            .all(|side| table.gives_in(side, key));
+            .all(|side| table.has_key_in(side, key));
         let wrong = "has no effect: [piers.left] and [piers.right] give their own; leave it out, or change it in these tables";
-        let _ = table.refuse(is_unused && table.gives(key), key, wrong);
+        let _ = table.refuse(is_unused && table.has_key(key), key, wrong);
     }
     table.check_faultless()?;
     // If `[piers]` itself has values, both piers exist.
@@ -393,7 +393,7 @@ fn read_piers(table: &mut Table<'_>) -> ReadResult<Piers> {
 fn read_fill(table: &mut Table<'_>) -> ReadResult<Fill> {
     let height_m = table.optional("height_m", &MAGNITUDE);
     let above_crown_m = table.optional("above_crown_m", &within(&(0.0..=1e6)));
-    let density_kg_m3 = table.required("density_kg_m3", &MAGNITUDE);
+    let density_kg_m3 = table.read_required("density_kg_m3", &MAGNITUDE);
     table.apply_relations(&[OneOf(&["height_m", "above_crown_m"], None)])?;
     let level = height_m.map(FillLevel::AboveSpringing);
     Ok(Fill {
@@ -418,7 +418,7 @@ fn why_it_falls(table: &mut Table<'_>, masonry: &Masonry, joints: &str) -> Fault
                 "gives piers that are too slender for this arch, which stands on rigid ground: joints {joints} open under \
                  its weight; {remedy}"
             );
-            table.wrong("piers", wrong)
+            table.reject("piers", wrong)
         }
         Remedy::LessLoad(factor) => {
             let thicker = |factor| format!(", or an arch {factor:.4} times as thick");
@@ -426,18 +426,18 @@ fn why_it_falls(table: &mut Table<'_>, masonry: &Masonry, joints: &str) -> Fault
             let wrong = format!(
                 "overloads the structure, which stands without it: joints {joints} open; give less load, or spread it{thicker}"
             );
-            table.wrong("load", wrong)
+            table.reject("load", wrong)
         }
         Remedy::ThickerArch(Some(factor)) => {
             let wrong = format!("{falls}; it stands if it is {factor:.4} times as thick");
             let mut keys = ["thickness_m", "thickness_ratio"].into_iter();
-            match keys.find(|key| table.gives_in(shape, key)) {
-                Some(key) => table.wrong_in(&[shape], key, format!("makes an arch that {wrong}")),
-                None => table.wrong(shape, wrong),
+            match keys.find(|key| table.has_key_in(shape, key)) {
+                Some(key) => table.reject_in(&[shape], key, format!("makes an arch that {wrong}")),
+                None => table.reject(shape, wrong),
             }
         }
         Remedy::ThickerArch(None) => {
-            table.wrong(shape, format!("{falls}; give a thicker arch, or less load"))
+            table.reject(shape, format!("{falls}; give a thicker arch, or less load"))
         }
     }
 }

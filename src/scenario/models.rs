@@ -67,7 +67,7 @@ impl MotionModel {
         }
         if let Some(coefficient) = self.options.friction_coefficient() {
             free_hinges::check_friction(structure, coefficient).map_err(|wrong| {
-                table.wrong_in(&[self.kind.table], "friction_coefficient", wrong)
+                table.reject_in(&[self.kind.table], "friction_coefficient", wrong)
             })?;
         }
         let site = &self.site;
@@ -96,7 +96,7 @@ const FREE_IMPACT: &str =
 
 /// True if the structure needs a model with joints: it has drums, or moved springings.
 fn needs_joints(table: &Table<'_>) -> bool {
-    table.gives("supports") || DRUM_KEYS.iter().any(|key| table.gives_in("column", key))
+    table.has_key("supports") || DRUM_KEYS.iter().any(|key| table.has_key_in("column", key))
 }
 
 /// The tables of a scenario that concern its model of motion.
@@ -126,7 +126,7 @@ impl Tables {
         let read: Vec<ReadResult<_>> = read.collect();
         let options: ReadResult<Vec<_>> = read.into_iter().collect();
         let supports = table.given_table("supports", supports::read);
-        let given = joints.rev().find(|kind| table.gives_table(kind.table));
+        let given = joints.rev().find(|kind| table.has_table(kind.table));
         let rows = (statics && needs_joints(table)).then_some(&FREE_HINGES);
         Self {
             kind: set.or(given).or(rows).unwrap_or(&FOUR_LINKS),

@@ -83,20 +83,20 @@ impl Relation<'_> {
                 exclude(table, keys, remedy);
             }
             Together(keys) => {
-                let given = keys.iter().find(|key| table.gives(key));
+                let given = keys.iter().find(|key| table.has_key(key));
                 let lacking = keys.iter().find(|key| !table.may_give(&[key]));
                 if let Some((key, other)) = given.zip(lacking) {
-                    table.wrong(key, format!("needs `{other}` beside it"));
+                    table.reject(key, format!("needs `{other}` beside it"));
                 }
             }
             Requires(key, other, why) => {
-                if table.gives(key) && !table.may_give(&[other]) {
-                    table.wrong(key, format!("needs `{other}`{why}"));
+                if table.has_key(key) && !table.may_give(&[other]) {
+                    table.reject(key, format!("needs `{other}`{why}"));
                 }
             }
             Excludes(key, other, why) => {
-                if table.gives(key) && table.gives(other) {
-                    table.wrong(other, why);
+                if table.has_key(key) && table.has_key(other) {
+                    table.reject(other, why);
                 }
             }
         }
@@ -111,7 +111,7 @@ fn exclude(table: &mut Table<'_>, keys: &[&str], remedy: &str) -> bool {
     let mut given: Vec<_> = keys
         .iter()
         .copied()
-        .filter(|key| table.gives(key))
+        .filter(|key| table.has_key(key))
         .collect();
     given.sort_by_key(|key| table.value_position(key));
     if let [first, others @ ..] = &given[..] {

@@ -64,20 +64,20 @@ impl RightFoot {
             let wrong = format!(
                 "cannot be followed: {FEET_NEED_JOINTS}; choose free hinges or elastic joints, or leave it out"
             );
-            return Err(outer.wrong_in(&["ground"], "right", wrong));
+            return Err(outer.reject_in(&["ground"], "right", wrong));
         }
         if structure.is_some_and(Structure::stands_on_one_support) {
             let wrong = "needs two feet, and this stands on one: leave it out";
-            return Err(outer.wrong_in(&["ground"], "right", wrong));
+            return Err(outer.reject_in(&["ground"], "right", wrong));
         }
         let mut changing = [StudyTable::Map, StudyTable::Suite]
             .map(StudyTable::name)
             .into_iter()
-            .filter(|study| outer.gives(study));
+            .filter(|study| outer.has_key(study));
         if let (Self::Record(_), Some(study)) = (self, changing.next()) {
             let wrong = "changes the motion of the ground, and [ground.right] has a record of its own: give `delay_s` or \
                          `apparent_velocity_m_s` there, with which both feet change";
-            return Err(outer.wrong(study, wrong));
+            return Err(outer.reject(study, wrong));
         }
         Ok(())
     }

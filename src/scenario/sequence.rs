@@ -86,7 +86,7 @@ impl Sequence {
 
     /// Reads the numbers of a key; each must follow `rule`. `None` if the key is not given or wrong.
     pub(super) fn read(table: &mut Table<'_>, key: &str, rule: &Number) -> Option<Self> {
-        if table.gives_table(key) || table.describes() {
+        if table.has_table(key) || table.describes() {
             let range = table.table(key, |table| Self::read_range(table, rule));
             if !table.describes() {
                 return range;
@@ -96,9 +96,9 @@ impl Sequence {
     }
 
     fn read_range(table: &mut Table<'_>, rule: &Number) -> ReadResult<Self> {
-        let from = table.required("from", rule);
-        let to = table.required("to", rule);
-        let count = table.required("count", &COUNT);
+        let from = table.read_required("from", rule);
+        let to = table.read_required("to", rule);
+        let count = table.read_required("count", &COUNT);
         let spacing = table.or("spacing", &one_of(Spacing::ALL), Spacing::Linear);
         table.check_faultless()?;
         let wrong = format!("is not above `from`; must be above {}", short(from));

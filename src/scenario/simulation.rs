@@ -33,8 +33,8 @@ impl Simulation {
             && let Some(wrong) = rows_fault(duration_s, output_step_s)
         {
             // A given step is easier to change than the duration.
-            let key = ["duration_s", OUTPUT_STEP_S][usize::from(table.gives(OUTPUT_STEP_S))];
-            table.wrong(key, wrong);
+            let key = ["duration_s", OUTPUT_STEP_S][usize::from(table.has_key(OUTPUT_STEP_S))];
+            table.reject(key, wrong);
         }
         let [tolerance, rest_ratio] = [Request::RELATIVE_TOLERANCE, Request::REST_ENERGY_RATIO];
         let mut or = |key, range, default| table.or(key, &within(&range), default);
@@ -74,8 +74,8 @@ impl Simulation {
         let Some(wrong) = fault else {
             return Ok(());
         };
-        if table.gives_in("simulation", OUTPUT_STEP_S) {
-            return Err(table.wrong_in(&["simulation"], OUTPUT_STEP_S, wrong));
+        if table.has_key_in("simulation", OUTPUT_STEP_S) {
+            return Err(table.reject_in(&["simulation"], OUTPUT_STEP_S, wrong));
         }
         Err(table.fault_of_table(format!(
             "{wrong}; give `duration_s` or `output_step_s` in [simulation]"

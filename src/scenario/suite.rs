@@ -180,7 +180,7 @@ impl Suite {
         let duration_s = simulation.and_then(|simulation| simulation.duration_s);
         let (listed, entries) = records.split_at(count);
         if let Some(wrong) = cut_off(listed, duration_s) {
-            table.wrong(RECORDS, wrong);
+            table.reject(RECORDS, wrong);
         }
         if let Some(wrong) = cut_off(entries, duration_s) {
             table.fault_of_table(wrong);
@@ -266,14 +266,14 @@ pub(super) fn check_directions(
     own: Directions,
     named: Directions,
 ) -> ReadResult<()> {
-    if own == named || !table.gives_in("simulation", "direction") {
+    if own == named || !table.has_key_in("simulation", "direction") {
         return Ok(());
     }
     let (own, named) = (own.name(), named.name());
     let wrong = format!(
         "is `direction = \"{named}\"` of [simulation] by an older name, and [simulation] gives \"{own}\"; leave `both_signs` out"
     );
-    Err(table.wrong_in(&["suite"], BOTH_SIGNS, wrong))
+    Err(table.reject_in(&["suite"], BOTH_SIGNS, wrong))
 }
 
 const RECORDS: &str = "records";
@@ -288,7 +288,7 @@ fn read_entry(
     let listing = RecordListing::of_entry(table);
     let scaling = Scaling::read(table)?;
     let is_replaced = matches!(strongest, Some(Scaling::PeakG(_)));
-    let key = match table.gives("scale") {
+    let key = match table.has_key("scale") {
         true => "scale",
         false => "peak_g",
     };

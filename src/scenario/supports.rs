@@ -36,7 +36,7 @@ pub(super) fn check(
     };
     if row.supports == Supports::Left {
         let alone = "needs two springings, of which one can move against the other, and this stands on one support: leave it out";
-        return Err(table.wrong("supports", alone));
+        return Err(table.reject("supports", alone));
     }
     let joints = &row.joints;
     let apart_m = (joints[joints.len() - 1].intrados_m - joints[0].intrados_m).x;
@@ -64,7 +64,7 @@ pub(super) fn check(
             };
             let wrong = "breaks before the end of the movement of [supports], with rigid joints: give a larger `breaks_at_strain`, \
                          or less movement";
-            return Err(table.wrong_element("tie", tie, wrong));
+            return Err(table.reject_element("tie", tie, wrong));
         }
         Err(error) => {
             let place = error.path_position().map_or_else(String::new, |part| {
@@ -73,5 +73,5 @@ pub(super) fn check(
             format!("cannot be followed{place}: {error}; give another movement or other joints")
         }
     };
-    Err(table.wrong("supports", wrong))
+    Err(table.reject("supports", wrong))
 }

@@ -155,7 +155,11 @@ impl<'a> Table<'a> {
     }
 
     /// Value of a key that must be given.
-    pub(super) fn required<R: Rule<Output: Default>>(&mut self, key: &str, rule: &R) -> R::Output {
+    pub(super) fn read_required<R: Rule<Output: Default>>(
+        &mut self,
+        key: &str,
+        rule: &R,
+    ) -> R::Output {
         let value = self.optional(key, rule);
         self.describe("required", || json!(key));
         self.needed(key, rule, value)
@@ -189,7 +193,7 @@ impl<'a> Table<'a> {
         match rule.read(self.entry(key, false)?) {
             Ok(value) => Some(value),
             Err(wrong) => {
-                self.wrong(key, format!("{wrong}; must be {}", rule.allowed()));
+                self.reject(key, format!("{wrong}; must be {}", rule.allowed()));
                 None
             }
         }
@@ -211,7 +215,7 @@ impl<'a> Table<'a> {
                 let path = format!("{}/{key}", self.path);
                 self.descend(key, Some((path, entries)), read).map(Some)
             }
-            Some(entry) => Err(self.wrong(key, format!("is {}; must be a table", kind(entry)))),
+            Some(entry) => Err(self.reject(key, format!("is {}; must be a table", kind(entry)))),
             None if self.describes() => self.descend(key, None, read).map(Some),
             None if self.may_give(&[key]) => Err(FaultRecorded),
             None => Ok(None),
@@ -234,7 +238,7 @@ impl<'a> Table<'a> {
             let kind = kind(entry);
             let name = format!("{}/{key}", self.path)[1..].replace('/', ".");
             let wrong = format!("is {kind}; must be an array of tables: write [[{name}]]");
-            self.wrong(key, wrong);
+            self.reject(key, wrong);
             return Vec::new();
         };
         let mut tables = Vec::new();
@@ -244,7 +248,7 @@ impl<'a> Table<'a> {
                 tables.extend(self.descend(key, Some((path, entries)), read));
             } else {
                 let wrong = format!("is {}; must be a table", kind(element));
-                self.wrong_element(key, index, wrong);
+                self.reject_element(key, index, wrong);
             }
         }
         tables
@@ -284,12 +288,12 @@ impl<'a> Table<'a> {
     }
 
     /// True if the file has a table with this key.
-    pub(super) fn gives_table(&self, key: &str) -> bool {
+    pub(super) fn has_table(&self, key: &str) -> bool {
         self.entries.get(key).is_some_and(Value::is_object)
     }
 
     /// True if the file has this key, here or as a default in the outer table.
-    pub(super) fn gives(&self, key: &str) -> bool {
+    pub(super) fn has_key(&self, key: &str) -> bool {
         self.entries.contains_key(key) || self.default_of(key).is_some()
     }
 
@@ -311,7 +315,7 @@ impl<'a> Table<'a> {
     }
 
     /// True if a table inside this one has the key.
-    pub(super) fn gives_in(&self, table: &str, key: &str) -> bool {
+    pub(super) fn has_key_in(&self, table: &str, key: &str) -> bool {
         let inner = self.entries.get(table);
         inner.is_some_and(|inner| inner.get(key).is_some())
     }
@@ -320,7 +324,7 @@ impl<'a> Table<'a> {
     pub(super) fn may_give(&self, keys: &[&str]) -> bool {
         let unread = &self.document.unread;
         let mut keys = keys.iter();
-        keys.any(|key| self.gives(key) || unread.contains(key))
+        keys.any(|key| self.has_key(key) || unread.contains(key))
     }
 
     /// True if the key is read as a table.
@@ -386,8 +390,8 @@ impl<'a> Table<'a> {
     }
 
     /// Records that the file of `key` is missing or wrong. `message` follows the key and its value.
-    pub(super) fn wrong_file(&mut self, key: &str, message: impl Display) -> FaultRecorded {
-        let reported = self.wrong(key, message);
+    pub(super) fn reject_file(&mut self, key: &str, message: impl Display) -> FaultRecorded {
+        let reported = self.reject(key, message);
         if let Some(fault) = self.faults.last_mut() {
             fault.of_file = true;
         }
@@ -395,8 +399,8 @@ impl<'a> Table<'a> {
     }
 
     /// Records that the value of `key` is wrong. `message` follows the key and its value.
-    pub(super) fn wrong(&mut self, key: &str, message: impl Display) -> FaultRecorded {
-        self.wrong_in(&[], key, message)
+    pub(super) fn reject(&mut self, key: &str, message: impl Display) -> FaultRecorded {
+        self.reject_in(&[], key, message)
     }
 
     /// Records that the value of `key` is wrong if `when` is true.
@@ -406,7 +410,7 @@ impl<'a> Table<'a> {
         key: &str,
         message: M,
     ) -> ReadResult<()> {
-        ensure(!when, || self.wrong(key, message))
+        ensure(!when, || self.reject(key, message))
     }
 
     /// Records that the whole table is wrong if `when` is true.
@@ -420,12 +424,12 @@ impl<'a> Table<'a> {
         key: &str,
         result: Result<T, E>,
     ) -> ReadResult<T> {
-        result.map_err(|wrong| self.wrong(key, wrong))
+        result.map_err(|wrong| self.reject(key, wrong))
     }
 
     /// Records that the value of `key` is wrong in nested tables inside this one. If the innermost table does not give the key, the
     /// outer tables are searched. If none gives it, the fault is at the innermost given table.
-    pub(super) fn wrong_in<M: Display>(
+    pub(super) fn reject_in<M: Display>(
         &mut self,
         path: &[&str],
         key: &str,
@@ -469,14 +473,14 @@ impl<'a> Table<'a> {
 
     /// Records that an element of the array of `key` is wrong; elements are counted from 0. A value that is not an array counts as
     /// its only element.
-    pub(super) fn wrong_element<M: Display>(
+    pub(super) fn reject_element<M: Display>(
         &mut self,
         key: &str,
         at: usize,
         wrong: M,
     ) -> FaultRecorded {
         let Some(element) = self.entries.get(key).and_then(|value| value.get(at)) else {
-            return self.wrong(key, wrong);
+            return self.reject(key, wrong);
         };
         let path = format!("{}/{key}/{at}", self.path);
         let value = self.document.quote(&path, element);
@@ -486,7 +490,7 @@ impl<'a> Table<'a> {
 
     /// Records that `key` is wrong or missing in an element of the array `[[name]]`; elements are counted from 0. `message` follows the key, its value
     /// and the element.
-    pub(super) fn wrong_in_element<M: Display>(
+    pub(super) fn reject_in_element<M: Display>(
         &mut self,
         (name, at): (&str, usize),
         key: &str,

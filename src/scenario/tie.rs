@@ -82,7 +82,7 @@ impl TieTable {
             let wrong = format!(
                 "is one of {count} ties; must be at most {MOST_TIES}: join those that lie side by side"
             );
-            table.wrong_element("tie", MOST_TIES, wrong);
+            table.reject_element("tie", MOST_TIES, wrong);
         }
         ties
     }
@@ -277,7 +277,7 @@ pub(super) fn place_ties(
 ) -> ReadResult<Vec<Tie>> {
     let placed = ties.iter().enumerate().map(|(index, tie)| {
         let placed = tie.place_tie(row, springings);
-        placed.map_err(|wrong| table.wrong_element("tie", index, wrong))
+        placed.map_err(|wrong| table.reject_element("tie", index, wrong))
     });
     placed.collect()
 }
@@ -298,7 +298,7 @@ pub(super) fn tied_column(
     let ties = place_ties(table, ties, (&row, None))?;
     let column = column
         .with_ties(ties, gravity_m_s2)
-        .map_err(|(index, error)| table.wrong_element("tie", index, error))?;
+        .map_err(|(index, error)| table.reject_element("tie", index, error))?;
     let row = column.row().map_err(|error| error.to_string());
     let falls = row
         .and_then(|row| collapse_mechanism(&row).map_err(|error| error.to_string()))

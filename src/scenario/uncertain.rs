@@ -207,7 +207,7 @@ impl Uncertain {
         for index in 0..self.keys.len() {
             let (before, others) = self.keys.split_at_mut(index);
             if let Err(wrong) = others[0].add_scenario_value(before, &known) {
-                faulty = Err(table.wrong_in(&[TABLE], &self.keys[index].key, wrong));
+                faulty = Err(table.reject_in(&[TABLE], &self.keys[index].key, wrong));
             }
         }
         faulty?;
@@ -224,7 +224,7 @@ impl Uncertain {
         }
         for key in &self.keys {
             if let Err(wrong) = key.check(scenario) {
-                faulty = Err(table.wrong_in(&[TABLE], &key.key, wrong));
+                faulty = Err(table.reject_in(&[TABLE], &key.key, wrong));
             }
         }
         faulty?;
@@ -232,7 +232,7 @@ impl Uncertain {
         for count in 2..=self.keys.len() {
             if let Err(wrong) = allows(&self.keys[..count], 0.5) {
                 let wrong = format!("contradicts the keys before it: {wrong}");
-                return Err(table.wrong_in(&[TABLE], &self.keys[count - 1].key, wrong));
+                return Err(table.reject_in(&[TABLE], &self.keys[count - 1].key, wrong));
             }
         }
         Ok(self)

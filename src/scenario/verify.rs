@@ -237,7 +237,7 @@ impl Records {
         }
         for (state, key) in RECORDS {
             let count = records.records_of(state).len();
-            let is_few = table.gives(key) && count < LEAST_RECORDS;
+            let is_few = table.has_key(key) && count < LEAST_RECORDS;
             let wrong = format!(
                 "has {count} records; must be at least {LEAST_RECORDS}, of which the worst counts, or 7 for their mean \
                  (NTC 2018, § 7.3.5)"
@@ -311,7 +311,7 @@ impl Verify {
                 CheckedSides::Both => continue,
                 _ => "goes with sides = \"both\": histories sway to both sides".to_owned(),
             };
-            return Err(table.wrong_in(&["verify"], key, wrong));
+            return Err(table.reject_in(&["verify"], key, wrong));
         }
         Ok(())
     }
@@ -494,10 +494,10 @@ impl Demand {
 
     fn read(table: &mut Table<'_>, points: impl Reader<ByState<PointDemand>>) -> ReadResult<Self> {
         let mut states = LimitState::ALL.iter().map(|state| state.name());
-        let demand = if states.any(|state| table.gives_in(state, "spectrum")) {
-            if let Some(key) = CODE_KEYS.into_iter().find(|key| table.gives(key)) {
+        let demand = if states.any(|state| table.has_key_in(state, "spectrum")) {
+            if let Some(key) = CODE_KEYS.into_iter().find(|key| table.has_key(key)) {
                 let wrong = "applies to ag_g, f0 and tc_star_s; spectra from files are used unchanged: leave it out";
-                return Err(table.wrong(key, wrong));
+                return Err(table.reject(key, wrong));
             }
             Self::Points(points(table)?)
         } else {
@@ -522,7 +522,7 @@ impl Demand {
 
 impl CodeDemand {
     fn read(table: &mut Table<'_>) -> ReadResult<Self> {
-        let soil = table.required("soil", &one_of(Soil::ALL));
+        let soil = table.read_required("soil", &one_of(Soil::ALL));
         let category = table.optional("topography", &one_of(Topography::ALL));
         let factor = table.optional("topographic_factor", &TOPOGRAPHIC_FACTOR);
         let is_site = table.check_relations(&[OneOf(&["topography", "topographic_factor"], None)]);
@@ -547,15 +547,15 @@ impl CodeDemand {
 
 fn read_hazard(table: &mut Table<'_>, site: Option<Site>) -> ReadResult<Hazard> {
     let hazard = Hazard {
-        ag_g: table.required("ag_g", &HAZARD),
-        f0: table.required("f0", &HAZARD),
-        tc_star_s: table.required("tc_star_s", &HAZARD),
+        ag_g: table.read_required("ag_g", &HAZARD),
+        f0: table.read_required("f0", &HAZARD),
+        tc_star_s: table.read_required("tc_star_s", &HAZARD),
     };
     table.check_faultless()?;
     if let Some(site) = site {
         GroundSpectrum::new(hazard, site).map_err(|error| {
             let wrong = format!("is out of range: must be {}", error.allowed);
-            table.wrong(error.argument, wrong)
+            table.reject(error.argument, wrong)
         })?;
     }
     Ok(hazard)
@@ -577,7 +577,7 @@ impl Building {
                     "lacks `{name}`, the period and damping of the building at that state: give \
                      {name} = {{ t_s = ..., damping_percent = ... }}"
                 );
-                return Err(table.wrong_element("modes", index, wrong));
+                return Err(table.reject_element("modes", index, wrong));
             }
         }
         Ok(Self { modes })
@@ -602,12 +602,12 @@ impl BuildingMode {
     fn read(table: &mut Table<'_>) -> ReadResult<Self> {
         let any = within(&(-10.0..=10.0));
         Ok(Self {
-            gamma: table.required("gamma", &any),
-            psi: table.required("psi", &any),
+            gamma: table.read_required("gamma", &any),
+            psi: table.read_required("psi", &any),
             states: read_by_state(table, |table, _| {
                 Ok(ModeState {
-                    t_s: table.required("t_s", &PERIOD_S),
-                    damping_percent: table.required("damping_percent", &DAMPING_PERCENT),
+                    t_s: table.read_required("t_s", &PERIOD_S),
+                    damping_percent: table.read_required("damping_percent", &DAMPING_PERCENT),
                 })
             }),
         })
@@ -620,7 +620,7 @@ fn is_point(decimal: &Decimal) -> bool {
 
 impl PointDemand {
     fn read(table: &mut Table<'_>, state: LimitState, confidence_factor: f64) -> ReadResult<Self> {
-        let spectrum = table.required("spectrum", &text());
+        let spectrum = table.read_required("spectrum", &text());
         let damping_percent = table.or("damping_percent", &DAMPING_PERCENT, 5.0);
         let decimal = layout::decimal(table);
         let default = StateRule::circolare(state, confidence_factor);

@@ -26,13 +26,13 @@ pub(in crate::scenario) fn inherit(table: &mut Table<'_>) -> Option<Format> {
 
 /// Reads the format, or determines it from the file if there is one.
 pub(super) fn read_or_ending(table: &mut Table<'_>, file: &str) -> Option<Format> {
-    let (format, is_key) = (read(table), table.gives("file"));
-    if format.is_some() || table.gives("format") || file.is_empty() && !is_key {
+    let (format, is_key) = (read(table), table.has_key("file"));
+    if format.is_some() || table.has_key("format") || file.is_empty() && !is_key {
         return format;
     }
     let found = find(table.files(), file, layout::has_table_keys(table));
     let report = |wrong| match is_key {
-        true => table.wrong("file", wrong),
+        true => table.reject("file", wrong),
         false => table.fault_of_table(wrong),
     };
     found.map_err(report).ok()

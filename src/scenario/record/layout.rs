@@ -36,11 +36,11 @@ pub(in crate::scenario) fn read(table: &mut Table<'_>, formats: &[Format]) -> La
         return layout;
     };
     let is_table = format == Format::CSV;
-    if let Some(key) = TABLE_KEYS.into_iter().find(|key| table.gives(key)) {
+    if let Some(key) = TABLE_KEYS.into_iter().find(|key| table.has_key(key)) {
         let _ = table.refuse(!is_table, key, "applies to `format = \"csv\"` only");
     }
     if let Some(unit) = layout.unit.filter(|unit| unit.quantity() != quantity) {
-        table.wrong("unit", format!("is {}", unit.other_quantity()));
+        table.reject("unit", format!("is {}", unit.other_quantity()));
     }
     let is_blank = |marker: &String| marker.trim_start().len() < marker.len().max(1);
     let wrong =
@@ -54,23 +54,23 @@ pub(in crate::scenario) fn read(table: &mut Table<'_>, formats: &[Format]) -> La
         refuse_corrections(table, (layout.baseline, layout.high_pass_hz));
     }
     if let Some(refusal) = format.unit_refusal() {
-        let _ = table.refuse(table.gives("unit"), "unit", refusal);
+        let _ = table.refuse(table.has_key("unit"), "unit", refusal);
     }
     if layout.channel.is_some() && !formats.iter().any(Format::has_channels) {
         let all = Format::ALL.iter().filter(|format| format.has_channels());
         let names: Vec<_> = all.map(|format| format!("{:?}", format.name())).collect();
         let wrong = "applies to formats with several channels only";
-        table.wrong("channel", format!("{wrong}: {}", names.join(", ")));
+        table.reject("channel", format!("{wrong}: {}", names.join(", ")));
     }
     if is_table {
         let wrong = "cannot be combined with `time_column`; give one of them";
         let _ = table.refuse(dt_s.is_some() && time_column.is_some(), "dt_s", wrong);
         if wrapped && layout.acceleration_column.is_some() {
             let wrong = "cannot be combined with `acceleration_column`; give one of them";
-            table.wrong("wrapped", wrong);
-        } else if wrapped && !table.gives("dt_s") {
+            table.reject("wrapped", wrong);
+        } else if wrapped && !table.has_key("dt_s") {
             let wrong = "needs `dt_s`: rows of several samples have no column of times";
-            table.wrong("wrapped", wrong);
+            table.reject("wrapped", wrong);
         }
         let column = time_column.unwrap_or(TableColumn::Number(1));
         layout.times = Some(dt_s.map_or(Times::Column(column), Times::Step));
@@ -95,7 +95,10 @@ pub(in crate::scenario) fn inherit(table: &mut Table<'_>, formats: &[Format]) {
     let applying = groups.into_iter().filter(|(_, applies)| *applies);
     let is_excluded = |key: &&str| {
         let mut pairs = EXCLUSIVE.iter().filter(|pair| pair.contains(key));
-        pairs.any(|pair| pair.iter().any(|other| other != key && table.gives(other)))
+        pairs.any(|pair| {
+            pair.iter()
+                .any(|other| other != key && table.has_key(other))
+        })
     };
     let keys = applying.flat_map(|(keys, _)| keys.iter().copied());
     let keys: Vec<_> = keys.filter(|key| !is_excluded(key)).collect();
@@ -121,7 +124,7 @@ pub(in crate::scenario) fn keys() -> impl Iterator<Item = &'static str> {
 
 /// Returns true if one of the keys for tables only is given.
 pub(in crate::scenario) fn has_table_keys(table: &Table<'_>) -> bool {
-    TABLE_KEYS.iter().any(|key| table.gives(key))
+    TABLE_KEYS.iter().any(|key| table.has_key(key))
 }
 
 /// Returns true if a key of `[ground.record]` describes tables: the keys for tables only, and `unit`.
@@ -204,7 +207,7 @@ fn read_corrections(table: &mut Table<'_>) -> Corrections {
 /// Records a fault for each correction of a record of velocities.
 fn refuse_corrections(table: &mut Table<'_>, (baseline, corner_hz): Corrections) {
     let wrong = "applies to accelerations: a uniform velocity shakes nothing; leave it out";
-    let given = match table.gives(BASELINE) {
+    let given = match table.has_key(BASELINE) {
         true => BASELINE,
         false => REMOVE_MEAN,
     };

@@ -226,7 +226,7 @@ impl Record {
         let start_s = table.or("start_s", &START_S, 0.0);
         let main = Series::read(table, known, start_s);
         let vertical = table.table("vertical", |table| Series::read(table, known, start_s));
-        let is_second = component == Component::Vertical && table.gives("vertical");
+        let is_second = component == Component::Vertical && table.has_key("vertical");
         let wrong =
             "cannot be combined with `component = \"vertical\"`; give one record per direction";
         table.refuse(is_second, "vertical", wrong)?;
@@ -241,7 +241,7 @@ impl Record {
         let motion = record.ground_motion(gravity_m_s2);
         if let Some(time_s) = motion.free_fall_s(gravity_m_s2).filter(|_| !known.2) {
             let inside: &[_] = record.vertical.as_ref().map_or(&[], |_| &["vertical"]);
-            return Err(table.wrong_in(inside, "file", free_fall(time_s)));
+            return Err(table.reject_in(inside, "file", free_fall(time_s)));
         }
         Ok((record, motion))
     }
@@ -429,7 +429,7 @@ impl Series {
 
     fn read(table: &mut Table<'_>, known: KnownRecords<'_>, start_s: f64) -> ReadResult<Self> {
         let (known, gravity_m_s2, _) = known;
-        let file = table.required("file", &text());
+        let file = table.read_required("file", &text());
         let format = format::read_or_ending(table, &file);
         let scaling = Scaling::read(table);
         let layout = layout::read(table, format.as_slice());
@@ -439,7 +439,7 @@ impl Series {
         let series = match known.find(|known| known.file == file && known.layout == layout) {
             Some(known) => known.clone(),
             None => Self::of_file(table.files(), file, layout)
-                .map_err(|wrong| table.wrong_file("file", wrong))?,
+                .map_err(|wrong| table.reject_file("file", wrong))?,
         };
         let series = series.scaled(scaling);
         series.check(table, start_s, gravity_m_s2.ok_or(FaultRecorded)?)?;

@@ -316,7 +316,7 @@ fn read_arch(
     if joints_deg.is_some() || !alone {
         let arch = CircularArch::new(arch, joints_deg).map_err(|error| {
             let wrong = format!("does not fit: {:?} must be {}", error.value, error.allowed);
-            table.wrong(error.argument, wrong)
+            table.reject(error.argument, wrong)
         });
         return Ok(StructureTable::Shape(MasonryShape::Circular(arch?)));
     }
@@ -330,8 +330,8 @@ fn read_arch(
         }
         Err(error) => {
             let keys = ["thickness_m", "thickness_ratio"];
-            let key = keys.into_iter().find(|key| table.gives(key));
-            Err(table.wrong(key.unwrap_or(keys[1]), why_not(&arch, error)))
+            let key = keys.into_iter().find(|key| table.has_key(key));
+            Err(table.reject(key.unwrap_or(keys[1]), why_not(&arch, error)))
         }
     }
 }
@@ -375,8 +375,8 @@ pub(super) const DRUM_KEYS: [&str; 3] = ["drums", "drum_heights_m", "top_width_m
 
 /// Reads `[column]` and the wall behind it. Drums and a taper need a model with joints.
 fn read_column(table: &mut Table<'_>, has_joints: bool) -> ReadResult<(Column, Option<BackWall>)> {
-    let height_m = table.required("height_m", &MAGNITUDE);
-    let width_m = table.required("width_m", &MAGNITUDE);
+    let height_m = table.read_required("height_m", &MAGNITUDE);
+    let width_m = table.read_required("width_m", &MAGNITUDE);
     let drums = table.optional("drums", &DRUMS);
     let drum_heights_m = table.optional("drum_heights_m", &list_of(&MAGNITUDE));
     let top_width_m = table.optional("top_width_m", &MAGNITUDE);
@@ -384,9 +384,9 @@ fn read_column(table: &mut Table<'_>, has_joints: bool) -> ReadResult<(Column, O
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, DENSITY_KG_M3);
     let pedestal = table.or("pedestal", &switch(), false);
     let back = table.table("back", back_wall::read);
-    if !has_joints && let Some(key) = DRUM_KEYS.into_iter().find(|key| table.gives(key)) {
+    if !has_joints && let Some(key) = DRUM_KEYS.into_iter().find(|key| table.has_key(key)) {
         let wrong = "needs a table [free_hinges] or [elastic_joints]: Housner's model is a single prismatic block";
-        table.wrong(key, wrong);
+        table.reject(key, wrong);
     }
     table.check_relations(&[AtMostOne(&["drums", "drum_heights_m"], GIVE_ONE)])?;
     let mut column = Column::new(height_m, width_m)

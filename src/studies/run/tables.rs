@@ -293,18 +293,26 @@ fn hinge_cells(hinges: &[Hinge], least: usize) -> Vec<(Option<f64>, Option<&'sta
 
 /// Numbers of the joints of these hinges, separated by spaces.
 fn joint_numbers(hinges: &[Hinge]) -> String {
-    joints_in_words(hinges, |joint, _| joint.to_string())
+    joints_in_words(hinges, |words, joint, _| *words += &joint.to_string())
 }
 
 /// Edges of these hinges, separated by spaces.
 fn joint_edges(hinges: &[Hinge]) -> String {
-    joints_in_words(hinges, |_, edge| edge.map_or("both", Edge::name).to_owned())
+    joints_in_words(hinges, |words, _, edge| {
+        *words += edge.map_or("both", Edge::name);
+    })
 }
 
-fn joints_in_words(hinges: &[Hinge], text: impl Fn(usize, Option<Edge>) -> String) -> String {
-    let texts = hinges.iter().filter_map(|hinge| match *hinge {
-        Hinge::Joint { joint, edge } => Some(text(joint, edge)),
-        Hinge::Section { .. } | Hinge::Toe(_) => None,
-    });
-    texts.collect::<Vec<_>>().join(" ")
+/// A word for each joint, added by a function. There are thousands of impacts, so no word is a text of its own.
+fn joints_in_words(hinges: &[Hinge], add: impl Fn(&mut String, usize, Option<Edge>)) -> String {
+    let mut words = String::new();
+    for hinge in hinges {
+        if let Hinge::Joint { joint, edge } = *hinge {
+            if !words.is_empty() {
+                words.push(' ');
+            }
+            add(&mut words, joint, edge);
+        }
+    }
+    words
 }
