@@ -199,9 +199,9 @@ impl Case {
             return None;
         }
         let four_links = FourLinks::of_arch(arch, ImpactModel::MaxRestitution).ok()?;
-        let free_hinges = FreeHinges::of_arch(arch).ok()?.for_many_cases();
+        let free_hinges = FreeHinges::of_arch(arch).ok()?.for_many_cases()?;
         let four = threshold(&four_links, pulse, from_g)?;
-        let free = threshold(&free_hinges, pulse, from_g)?;
+        let free = threshold(&*free_hinges, pulse, from_g)?;
         // Beyond the largest amplitude, the models need not be compared.
         if !free.is_found {
             return None;

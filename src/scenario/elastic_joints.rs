@@ -213,12 +213,6 @@ impl ModelOptions for ElasticTable {
         Ok(Box::new(self.build_model(structure, site)?))
     }
 
-    fn model_for_many_cases(&self, structure: &Structure, site: &Site) -> AnyModel {
-        Ok(Box::new(
-            self.build_model(structure, site)?.for_many_cases(),
-        ))
-    }
-
     /// Makes models with other stiffness and contact, and one with rigid joints, unless a wall stands behind the structure.
     fn variations(&self, structure: &Structure, site: &Site) -> Result<Vec<Variation>, ModelError> {
         let mut variations = self.build_model(structure, site)?.variations();

@@ -52,10 +52,6 @@ impl ModelOptions for RowOptions {
         Ok(Box::new(model(*self, structure, site)?))
     }
 
-    fn model_for_many_cases(&self, structure: &Structure, site: &Site) -> AnyModel {
-        Ok(Box::new(model(*self, structure, site)?.for_many_cases()))
-    }
-
     fn friction_coefficient(&self) -> Option<f64> {
         self.friction_coefficient
     }

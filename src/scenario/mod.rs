@@ -506,14 +506,13 @@ impl Scenario {
         Ok(self.repeated_mirrored(options.model(&self.structure, site)?))
     }
 
-    /// Makes the model of the structure for a study of many cases: see [`FreeHinges::for_many_cases`](crate::FreeHinges::for_many_cases) and
-    /// [`ElasticJoints::for_many_cases`](crate::ElasticJoints::for_many_cases).
+    /// Makes the model of the structure for a study of many cases: see [`Model::for_many_cases`].
     ///
     /// # Errors
     /// As [`Scenario::model`].
     pub fn model_for_many_cases(&self) -> Result<Box<dyn Model>, ModelError> {
-        let MotionModel { options, site, .. } = &self.motion;
-        Ok(self.repeated_mirrored(options.model_for_many_cases(&self.structure, site)?))
+        let model = self.model()?;
+        Ok(model.for_many_cases().unwrap_or(model))
     }
 
     /// Model of motion whose first repetition is mirrored, if both directions are requested and the problem is symmetric.

@@ -88,14 +88,6 @@ pub(crate) trait ModelOptions: Debug + Send + Sync {
     /// When the structure does not rock as four links, or is not a row of blocks that can stand.
     fn model(&self, structure: &Structure, site: &Site) -> AnyModel;
 
-    /// Makes the model for a study of many cases.
-    ///
-    /// # Errors
-    /// As [`ModelOptions::model`].
-    fn model_for_many_cases(&self, structure: &Structure, site: &Site) -> AnyModel {
-        self.model(structure, site)
-    }
-
     /// Makes models with other, equally likely properties.
     ///
     /// # Errors

@@ -49,9 +49,9 @@ fn single(row: &FreeHinges, map: &OverturningMap<'_>, amplitude_g: f64, duration
         .scenario
         .request_on(map.scenario.ground_motion(), &map.scenario.structure);
     let case = [(ground, request)];
-    let mut row = row.clone().for_many_cases();
+    let mut row = row.for_many_cases().unwrap();
     row.repeat_mirrored();
-    Ending::of_all(&row, &case).remove(0).unwrap()
+    Ending::of_all(&*row, &case).remove(0).unwrap()
 }
 
 fn ended(map: &OverturningMap<'_>, index: usize) -> Ending {

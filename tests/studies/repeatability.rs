@@ -422,7 +422,7 @@ fn maps_have_the_outcomes_of_runs() {
     let most = if cases > 6 { 30 } else { 12 };
     for _ in 0..cases {
         let (model, ground, end_s) = case(&mut random, most);
-        let of_maps = model.clone().for_many_cases();
+        let of_maps = model.for_many_cases().unwrap();
         let request = Request {
             end_s,
             ..Request::default()
@@ -544,7 +544,7 @@ fn maps_of_elastic_joints_have_the_outcomes_of_runs() {
     let (mut disagreeing, mut resting, mut least) = (0, 0, f64::INFINITY);
     for _ in 0..cases {
         let (model, ground) = elastic_case(&mut random, most);
-        let of_maps = model.clone().for_many_cases();
+        let of_maps = model.for_many_cases().unwrap();
         let request = Request {
             end_s,
             ..Request::default()

@@ -91,6 +91,12 @@ pub trait Model: Debug + Send + Sync {
         false
     }
 
+    /// This model with the longer steps of a study of many cases; `None` if its steps are given, or follow from a tolerance. Few verdicts change, and
+    /// those that do are those of histories close to overturning.
+    fn for_many_cases(&self) -> Option<Box<dyn Model>> {
+        None
+    }
+
     /// Number of motions that are computed side by side, faster than one by one.
     fn lanes(&self) -> usize {
         1

@@ -258,9 +258,11 @@ pub fn threshold(
     let searched = factors
         .factors_to_search(onset)
         .map_err(StudyError::Scenario)?;
+    let many_cases = model.for_many_cases();
     let shaking = Shaking {
         direction: directions.first(),
         model,
+        faster: many_cases.as_deref(),
         ground,
         request,
         searched: &searched,

@@ -23,6 +23,8 @@ const TOGETHER: usize = 16;
 pub(super) struct Shaking<'a> {
     pub(super) direction: Direction,
     pub(super) model: &'a dyn Model,
+    /// The model with the longer steps of many cases, for histories that nobody quotes: all but those at edges. `None` if there is none.
+    pub(super) faster: Option<&'a dyn Model>,
     pub(super) ground: &'a GroundMotion,
     pub(super) request: &'a Request,
     pub(super) searched: &'a SearchedFactors,
@@ -62,6 +64,10 @@ fn report_step(
 }
 
 impl Shaking<'_> {
+    fn fastest(&self) -> &dyn Model {
+        self.faster.unwrap_or(self.model)
+    }
+
     /// Finds the threshold of the model with this name among these ascending factors. Returns it with the other histories: those of bisections, and
     /// those of the search below the first edge.
     pub(super) fn threshold(
@@ -72,6 +78,7 @@ impl Shaking<'_> {
         mut watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(Threshold, OtherHistories), StudyError> {
         let mut samples = self.search_upwards(factors, runner, &mut watch)?;
+        self.compute_edges_again(&mut samples, runner, &mut watch)?;
         let (mut edges, mut others) = self.bisect(&mut samples, runner, &mut watch)?;
         let first = Threshold::new(name.to_owned(), *self.searched, samples, &edges);
         let safe = Survival::of_threshold(&first).survives_up_to;
@@ -118,7 +125,12 @@ impl Shaking<'_> {
                     ..progress
                 })
             };
-            let found = self.compute_in_parallel(some, |some| self.samples(some), runner, watch)?;
+            let found = self.compute_in_parallel(
+                some,
+                |some| self.samples(self.fastest(), some),
+                runner,
+                watch,
+            )?;
             samples.extend(found);
             let overturns = |sample: &FactorSample| sample.verdict() == Some(Verdict::Overturns);
             let first = samples.iter().position(overturns);
@@ -128,6 +140,36 @@ impl Shaking<'_> {
             }
         }
         Ok(samples)
+    }
+
+    /// Computes samples at edges again, with the steps of a run, until the verdicts on both sides of each edge have these steps. So has the last sample,
+    /// which is quoted if no factor overturns the structure.
+    fn compute_edges_again(
+        &self,
+        samples: &mut [FactorSample],
+        runner: &Runner,
+        mut watch: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<(), RunnerError> {
+        let mut again = vec![self.faster.is_none(); samples.len()];
+        loop {
+            let differs = |pair: &[FactorSample]| pair[0].verdict() != pair[1].verdict();
+            let is_at_edge = |index: usize| {
+                let neighbours = &samples[index.saturating_sub(1)..samples.len().min(index + 2)];
+                index + 1 == samples.len() || neighbours.windows(2).any(differs)
+            };
+            let wanted = (0..samples.len()).filter(|index| !again[*index] && is_at_edge(*index));
+            let wanted: Vec<usize> = wanted.collect();
+            if wanted.is_empty() {
+                return Ok(());
+            }
+            let factors: Vec<f64> = wanted.iter().map(|index| samples[*index].factor).collect();
+            let watch = report_step(step_after(samples, false), &mut watch);
+            let compute = |some: &[f64]| self.samples(self.model, some);
+            let found = self.compute_in_parallel(&factors, compute, runner, watch)?;
+            for (index, sample) in wanted.into_iter().zip(found) {
+                (samples[index], again[index]) = (sample, true);
+            }
+        }
     }
 
     /// Computes results for several factors on all threads, in their order.
@@ -190,7 +232,7 @@ impl Shaking<'_> {
         let histories = |factors: &[f64], later: usize| {
             let compute = |some: &[f64]| {
                 let ground = |factor| self.ground.scaled(factor);
-                FineHistory::of_all(self.model, self.request, some, ground)
+                FineHistory::of_all(self.fastest(), self.request, some, ground)
             };
             let mut watch = report_step(step, &mut watch);
             let found = self.compute_in_parallel(factors, compute, runner, |progress| {
@@ -212,14 +254,14 @@ impl Shaking<'_> {
         )?;
         let mut lower: Vec<FactorSample> = Vec::new();
         let repeated = |factor: f64| {
-            lower.splice(0..0, self.samples(&[factor]));
+            lower.splice(0..0, self.samples(self.model, &[factor]));
             Ok::<_, RunnerError>(lower[0].verdict().unwrap_or(Verdict::Incomplete))
         };
         fine.confirm_lowest(repeated)?;
         if let Some((hit, _)) = fine.upper_edge()
             && lower.iter().all(|sample| sample.factor != hit)
         {
-            lower.extend(self.samples(&[hit]));
+            lower.extend(self.samples(self.model, &[hit]));
         }
         let (found, tried) = self.bisect(&mut lower, runner, watch)?;
         edges.extend(found);
@@ -238,13 +280,13 @@ impl Shaking<'_> {
         FactorSample { factor, result }
     }
 
-    /// Computes the histories for several factors, in their order.
-    fn samples(&self, factors: &[f64]) -> Vec<FactorSample> {
+    /// Computes the histories of a model for several factors, in their order.
+    fn samples(&self, model: &dyn Model, factors: &[f64]) -> Vec<FactorSample> {
         let cases = factors.iter().map(|factor| {
             let ground = self.ground.scaled(*factor);
             Ok((ground.map_err(SimulationError::from)?, *self.request))
         });
-        let endings = answer_valid_cases(cases, |cases| Ending::of_all(self.model, cases));
+        let endings = answer_valid_cases(cases, |cases| Ending::of_all(model, cases));
         let samples = factors.iter().copied().zip(endings);
         samples
             .map(|(factor, result)| self.sample(factor, result))
@@ -270,7 +312,7 @@ impl Shaking<'_> {
         let edge = try_bisect(low, high, width, |factor| {
             let known = |ahead: &[FactorSample]| ahead.iter().position(|it| it.factor == factor);
             let place = known(&ahead).unwrap_or_else(|| {
-                ahead = self.samples(&next_middles(low, high, width, steps));
+                ahead = self.samples(self.model, &next_middles(low, high, width, steps));
                 // The first history ahead is the one that is needed now.
                 0
             });

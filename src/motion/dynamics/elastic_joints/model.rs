@@ -180,13 +180,6 @@ impl ElasticJoints {
         Ok(self)
     }
 
-    /// This model for a study of many cases, with longer default steps. Few results change, and those that do differ between repetitions.
-    #[must_use]
-    pub const fn for_many_cases(mut self) -> Self {
-        self.many_cases = true;
-        self
-    }
-
     /// Row of blocks.
     pub const fn row(&self) -> &Row {
         &self.rigid.row
@@ -460,6 +453,15 @@ impl Model for ElasticJoints {
 
     fn repeat_mirrored(&mut self) {
         self.repeats_mirrored = self.rigid.is_symmetric();
+    }
+
+    fn for_many_cases(&self) -> Option<Box<dyn Model>> {
+        self.given_step_s.is_none().then(|| {
+            Box::new(Self {
+                many_cases: true,
+                ..self.clone()
+            }) as _
+        })
     }
 
     fn bodies(&self) -> Vec<String> {

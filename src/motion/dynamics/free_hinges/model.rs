@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use serde::Serialize;
 
 use super::motion::motion;
-use super::settings::MANY_CASES_STEP_RATIO;
+use super::settings::{MANY_CASES_STEP_RATIO, MANY_SLIDING_CASES_STEP_RATIO};
 use crate::argument::{ArgumentError, require, require_within};
 use crate::dynamics::model::{Recorder, check};
 use crate::dynamics::row::observer::require_balance;
@@ -165,14 +165,6 @@ impl FreeHinges {
         })
     }
 
-    /// This model for a study of many cases: without slip, default steps are longer. Few results change, and those that do differ between
-    /// repetitions.
-    #[must_use]
-    pub const fn for_many_cases(mut self) -> Self {
-        self.many_cases = true;
-        self
-    }
-
     /// Coulomb's coefficient of friction; `None` if joints do not slip.
     pub const fn friction_coefficient(&self) -> Option<f64> {
         self.options.friction_coefficient
@@ -197,12 +189,15 @@ impl FreeHinges {
     fn settings(&self, request: &Request) -> Settings {
         let (row, gravity_m_s2, end_s) = (self.row(), request.gravity_m_s2, request.end_s);
         let mut settings = match self.options.friction_coefficient {
-            None if self.many_cases => {
-                Settings::to_landings(row, gravity_m_s2, end_s).times(MANY_CASES_STEP_RATIO)
-            }
             None => Settings::to_landings(row, gravity_m_s2, end_s),
             Some(_) => Settings::equal(row, gravity_m_s2, end_s),
         };
+        if self.many_cases {
+            settings = settings.times(match self.options.friction_coefficient {
+                None => MANY_CASES_STEP_RATIO,
+                Some(_) => MANY_SLIDING_CASES_STEP_RATIO,
+            });
+        }
         if let Some(longest_s) = self.options.longest_step_s {
             settings = settings.times(longest_s / settings.longest_step_s);
         }
@@ -254,6 +249,20 @@ impl Model for FreeHinges {
 
     fn bodies(&self) -> Vec<String> {
         self.rigid.bodies()
+    }
+
+    fn for_many_cases(&self) -> Option<Box<dyn Model>> {
+        let RowOptions {
+            longest_step_s,
+            shortest_step_s,
+            ..
+        } = self.options;
+        longest_step_s.or(shortest_step_s).is_none().then(|| {
+            Box::new(Self {
+                many_cases: true,
+                ..self.clone()
+            }) as _
+        })
     }
 
     fn slips(&self) -> bool {

@@ -344,12 +344,10 @@ impl<'a> MotionObserver<'a> {
 
     /// Sends a complete sample to the recorder.
     pub(super) fn record(&mut self, sample: Sample, kinetic: f64) {
+        let rest_j = self.rest_potential_j();
         self.sample = sample;
         let sample = &mut self.sample;
         sample.energy_j = kinetic + self.potential;
-        // A row that has slipped may rest lower than before.
-        let slips = self.row_summary.sliding.is_some();
-        let rest_j = if slips { self.least_potential_j } else { 0.0 };
         let ratio = |barrier_j| (sample.energy_j - rest_j) / barrier_j;
         sample.energy_ratio = self.input.barrier_j.map(ratio);
         if self.is_falling {
@@ -404,7 +402,7 @@ impl<'a> MotionObserver<'a> {
             _ if self.is_incomplete() => Outcome::Incomplete,
             _ => outcome,
         };
-        let potential_j = self.row_summary.largest_potential_j;
+        let potential_j = self.row_summary.largest_potential_j - self.rest_potential_j();
         let over = |barrier_j: f64| potential_j / barrier_j;
         self.row_summary.peak_potential_over_barrier = self.known_barrier_j().map(over);
         self.row_summary.energy_error = self.energy_error(self.input.energy_scale_j);

@@ -3,7 +3,7 @@
 use super::{MotionObserver, REST_ENERGY_RATIO, side_of};
 use crate::dynamics::Outcome;
 use crate::dynamics::request::later_end_s;
-use crate::dynamics::until::SAFE;
+use crate::dynamics::until::{SAFE, comparable_slip_m};
 
 /// Duration of small kinetic energy, over the square root of size over gravity, after which a row is at rest. It is longer than a turning point.
 const REST_TIME_RATIO: f64 = 0.5;
@@ -111,18 +111,31 @@ impl MotionObserver<'_> {
         }
         let crushed_little = |barrier_j: &f64| self.elastic.crushed_j <= SLIPPED_RATIO * barrier_j;
         let energy_ratio = match self.known_barrier_j().filter(crushed_little) {
-            Some(barrier_j) => (self.kinetic + self.potential) / barrier_j,
+            Some(barrier_j) => {
+                (self.kinetic + self.potential - self.rest_potential_j()) / barrier_j
+            }
             None => self.recent.largest_j() / self.input.undeformed_barrier_j,
         };
         self.time < self.input.ground.end_s() || energy_ratio > SAFE
     }
 
-    /// Energy barrier, in J; `None` if unknown, or if the row has slipped so much that its potential energy is not comparable.
+    /// Energy barrier, in J; `None` if unknown, or if the row has slipped so much that its potential energy is not comparable. Rigid joints
+    /// that slip a little to and fro take much energy, and leave the barrier as it was.
     pub(super) fn known_barrier_j(&self) -> Option<f64> {
-        let sliding = self.row_summary.sliding.as_ref();
-        let rubbed_j = sliding.map_or(0.0, |sliding| sliding.friction_j);
-        let known = |barrier_j: &f64| rubbed_j <= SLIPPED_RATIO * barrier_j;
+        let Some(sliding) = &self.row_summary.sliding else {
+            return self.input.barrier_j;
+        };
+        let is_rigid = self.has_rocked.is_none();
+        let slips_little = || sliding.largest_m() < comparable_slip_m(self.input.row);
+        let rubs_little = |barrier_j: f64| sliding.friction_j <= SLIPPED_RATIO * barrier_j;
+        let known = |barrier_j: &f64| rubs_little(*barrier_j) || is_rigid && slips_little();
         self.input.barrier_j.filter(known)
+    }
+
+    /// Potential energy at rest, in J: the least one up to now. A row that has slipped may rest lower than before.
+    pub(super) fn rest_potential_j(&self) -> f64 {
+        let slips = self.row_summary.sliding.is_some();
+        if slips { self.least_potential_j } else { 0.0 }
     }
 
     /// Duration of small kinetic energy after which the row is at rest, in seconds.
