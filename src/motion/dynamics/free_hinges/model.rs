@@ -90,10 +90,10 @@ const OTHER_SETTINGS: [(&str, f64, bool); 6] = [
 const OTHER_STEPS: [(&str, f64); 6] = [
     ("half steps", 0.5),
     ("double steps", 2.0),
-    ("quarter steps", 0.25),
-    ("steps times 0.35", 0.35),
     ("steps times 0.7", 0.7),
     ("steps times 1.4", 1.4),
+    ("steps times 0.6", 0.6),
+    ("steps times 1.7", 1.7),
 ];
 /// Step length proposed after an error of the energy balance, over the longest step.
 const SHORTER: f64 = 0.2;
@@ -210,11 +210,13 @@ impl FreeHinges {
         settings.output_step_s = Some(request.output_step_s);
         settings.outcome_by_s = request.outcome_by_s;
         settings.friction_coefficient = self.options.friction_coefficient;
-        if self.merges_landings {
-            settings.with_landings_merged()
-        } else {
-            settings.with_steps_times(self.steps_times)
+        if self.many_cases {
+            settings.merged_after = 0;
         }
+        if self.merges_landings {
+            settings = settings.with_landings_merged();
+        }
+        settings.with_steps_times(self.steps_times)
     }
 }
 
