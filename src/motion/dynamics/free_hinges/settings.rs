@@ -10,7 +10,7 @@ const SHORTEST_STEP_RATIO: f64 = 1.0 / 30.0;
 /// than 1 % from those with the shortest steps; with the steps of a single run, those of 5 arches differ.
 pub const MANY_CASES_STEP_RATIO: f64 = 1.1 / 0.34;
 /// [`MANY_CASES_STEP_RATIO`] of joints that slip.
-pub const MANY_SLIDING_CASES_STEP_RATIO: f64 = 2.0;
+pub const MANY_SLIDING_CASES_STEP_RATIO: f64 = 3.0;
 /// Number of impacts within the shortest step after which the next landings are merged; an infinite series of impacts would stop time.
 const CLUSTER_IMPACTS: usize = 50;
 /// Energy on quiet ground, over the largest potential energy, below which the half cycles of a history are too small to be compared with others.
