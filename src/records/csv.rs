@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::io::Read as _;
+use std::ops::Range;
 
 use ::csv::{ReaderBuilder, StringRecord, Terminator};
 use archrock_text::{ensure, excerpt};
@@ -404,7 +405,7 @@ impl<'a> Columns<'a> {
     }
 
     fn no_column(&self, index: usize, row: &Row<'_>) -> String {
-        let hint = match self.time.is_some() && row.cells().count() == 1 {
+        let hint = match self.time.is_some() && row.cells.len() == 1 {
             true => "; if the file has accelerations only, give `dt_s`",
             false => "",
         };
@@ -487,6 +488,8 @@ struct Row<'a> {
     text: &'a str,
     by_blanks: bool,
     record: StringRecord,
+    /// Places of the cells in the text of the record. Every check of a row asks for them, so they are found once.
+    cells: Vec<Range<usize>>,
 }
 
 impl<'a> Rows<'a> {
@@ -539,12 +542,7 @@ impl<'a> Iterator for Rows<'a> {
             let read = &self.text[..end.min(self.text.len())];
             let text = read.lines().next_back().unwrap_or_default().trim();
             if !text.is_empty() && !text.starts_with('#') {
-                return Some(Row {
-                    line,
-                    text,
-                    by_blanks: self.delimiter == b' ',
-                    record,
-                });
+                return Some(Row::new(line, text, self.delimiter == b' ', record));
             }
         }
         None
@@ -591,21 +589,42 @@ fn touching(cell: &str, by_blanks: bool) -> impl Iterator<Item = &str> {
     whole.into_iter().chain(words(parts))
 }
 
-impl Row<'_> {
-    /// Returns the cells, without surrounding blanks. A quotation mark after a blank is not a quotation for the CSV reader, so it is removed
-    /// here.
-    fn cells(&self) -> impl Iterator<Item = &str> {
-        let cells = self.record.iter();
-        // Consecutive blanks count as one separator.
-        let cells = cells.filter(|cell| !(self.by_blanks && cell.trim().is_empty()));
-        let cells = cells.map(|cell| cell.trim().trim_matches('"').trim());
-        cells.flat_map(|cell| touching(cell, self.by_blanks))
+impl<'a> Row<'a> {
+    /// Finds the cells of a record, without surrounding blanks. A quotation mark after a blank is not a quotation for the CSV reader, so it is
+    /// removed here.
+    fn new(line: usize, text: &'a str, by_blanks: bool, record: StringRecord) -> Self {
+        let whole = record.as_slice();
+        let mut cells = Vec::with_capacity(record.len());
+        for cell in &record {
+            let cell = cell.trim();
+            // Consecutive blanks count as one separator.
+            if by_blanks && cell.is_empty() {
+                continue;
+            }
+            let cell = cell.trim_matches('"').trim();
+            cells.extend(touching(cell, by_blanks).map(|part| {
+                let start = part.as_ptr().addr() - whole.as_ptr().addr();
+                start..start + part.len()
+            }));
+        }
+        Self {
+            line,
+            text,
+            by_blanks,
+            record,
+            cells,
+        }
+    }
+
+    fn cells(&self) -> impl DoubleEndedIterator<Item = &str> + ExactSizeIterator {
+        let whole = self.record.as_slice();
+        self.cells.iter().map(move |cell| &whole[cell.clone()])
     }
 
     /// Returns the number of cells up to the last one that is not empty.
     fn count(&self) -> usize {
-        let filled = self.cells().zip(1..).filter(|(cell, _)| !cell.is_empty());
-        filled.last().map_or(0, |(_, count)| count)
+        let filled = self.cells().rposition(|cell| !cell.is_empty());
+        filled.map_or(0, |last| last + 1)
     }
 
     /// Returns true if all cells are names.
@@ -615,7 +634,7 @@ impl Row<'_> {
 
     /// Returns the number of columns of this row, without and with empty cells at its end.
     fn width(&self) -> [usize; 2] {
-        [self.count(), self.cells().count()]
+        [self.count(), self.cells.len()]
     }
 
     fn fault(&self, message: String) -> LineFault {
