@@ -437,7 +437,7 @@ fn maps_have_the_outcomes_of_runs() {
             let whole = model.simulate(&ground, &request, Some(&mut watch));
             let case = [(ground.clone(), request)];
             let same_steps = Ending::of_all(&model, &case).remove(0);
-            let cell = Ending::of_all(&of_maps, &case).remove(0);
+            let cell = Ending::of_all(&*of_maps, &case).remove(0);
             // Ground motion much stronger than the onset may need shorter steps.
             let (Ok(whole), Ok(same_steps), Ok(cell)) = (whole, same_steps, cell) else {
                 continue;
@@ -559,7 +559,7 @@ fn maps_of_elastic_joints_have_the_outcomes_of_runs() {
             };
             let whole = of_maps.simulate(&ground, &request, Some(&mut watch));
             let own = model.simulate(&ground, &request, None).unwrap();
-            let cell = Ending::of_all(&of_maps, &[(ground.clone(), request)]).remove(0);
+            let cell = Ending::of_all(&*of_maps, &[(ground.clone(), request)]).remove(0);
             let (whole, cell) = (whole.unwrap(), cell.unwrap());
             let falls = |outcome: Outcome| matches!(outcome, Outcome::Overturned(_));
             assert_eq!(cell.peak_of_row_rad(), Some(whole.largest_rotation_rad()));
