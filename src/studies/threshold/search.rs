@@ -9,11 +9,23 @@ use super::{FactorSample, Survival, Threshold};
 use crate::bisection::{Width, next_middles, try_bisect};
 use crate::dynamics::Direction;
 use crate::studies::ending::{Ending, NoHistory, Verdict, answer_valid_cases};
+use crate::studies::runner::in_parallel;
 use crate::studies::{Counted, Progress, Runner, RunnerError, SearchStep, StudyError};
 use crate::{GroundMotion, Model, Request, SimulationError};
 
-/// Number of bisection steps computed ahead for models that compute histories faster together: three steps are seven histories.
+/// Largest number of bisection steps computed ahead: three steps are seven histories.
 const STEPS_AHEAD: usize = 3;
+
+/// Number of bisection steps computed together, for a model that computes histories faster together, or if threads are idle because there are
+/// fewer edges. Results do not depend on it: of the histories ahead, only those that the bisection reaches count.
+fn steps_together(model: &dyn Model, edges: usize) -> usize {
+    let idle = rayon::current_num_threads() / edges.max(1);
+    match model.lanes() > 1 {
+        true => STEPS_AHEAD,
+        // Two steps are three histories.
+        false => (idle + 1).ilog2().clamp(1, STEPS_AHEAD as u32) as usize,
+    }
+}
 
 /// Number of factors computed together on the way up to the first collapse. It does not depend on the number of threads, so that no result does.
 const TOGETHER: usize = 16;
@@ -203,7 +215,7 @@ impl Shaking<'_> {
                 both.is_some_and(|(below, above)| below != above)
             })
             .collect();
-        let search = |index: usize| self.search(changes[index]);
+        let search = |index: usize| self.search(changes[index], changes.len());
         let watch = report_step(step_after(samples, false), watch);
         let found = runner.each(changes.len(), search, watch)?;
         let (mut edges, mut tried) = (Vec::new(), Vec::new());
@@ -293,9 +305,9 @@ impl Shaking<'_> {
             .collect()
     }
 
-    /// Finds the edge between neighbouring factors with different verdicts. If a history has a third verdict, returns this history and the edges
+    /// Finds the edge between neighbouring factors with different verdicts, one of a number of `edges`. If a history has a third verdict, returns this history and the edges
     /// on both sides of it; if a history fails, returns that history. The other histories come with it.
-    fn search(&self, (below, above): Change<'_>) -> Vec<EdgeStep> {
+    fn search(&self, (below, above): Change<'_>, edges: usize) -> Vec<EdgeStep> {
         let is_uncertain = [below, above]
             .map(FactorSample::verdict)
             .contains(&Some(Verdict::Uncertain));
@@ -304,15 +316,18 @@ impl Shaking<'_> {
         } else {
             EDGE_WIDTH
         });
-        let has_lanes = self.model.lanes() > 1;
-        let steps = if has_lanes { STEPS_AHEAD } else { 1 };
+        let steps = steps_together(self.model, edges);
+        let compute = |factors: &[f64]| match self.model.lanes() > 1 {
+            true => self.samples(self.model, factors),
+            false => in_parallel(factors, |factor| self.samples(self.model, &[*factor])).concat(),
+        };
         let (mut low, mut high) = (below.factor, above.factor);
         let mut ahead: Vec<FactorSample> = Vec::new();
         let mut found = Vec::new();
         let edge = try_bisect(low, high, width, |factor| {
             let known = |ahead: &[FactorSample]| ahead.iter().position(|it| it.factor == factor);
             let place = known(&ahead).unwrap_or_else(|| {
-                ahead = self.samples(self.model, &next_middles(low, high, width, steps));
+                ahead = compute(&next_middles(low, high, width, steps));
                 // The first history ahead is the one that is needed now.
                 0
             });
@@ -335,8 +350,8 @@ impl Shaking<'_> {
             Ok((low, high)) => found.push(EdgeStep::Edge(low, high)),
             Err(met) => {
                 if met.verdict().is_some() {
-                    found.extend(self.search((below, &*met)));
-                    found.extend(self.search((&*met, above)));
+                    found.extend(self.search((below, &*met), edges));
+                    found.extend(self.search((&*met, above), edges));
                 }
                 found.push(EdgeStep::Met(met));
             }
