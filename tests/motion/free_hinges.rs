@@ -504,7 +504,6 @@ fn fall(row: &Row, linkage: &Linkage, step_s: f64) -> Kept {
         longest_step_s: step_s,
         shortest_step_s: 1e-6,
         merged_after: 50,
-        decaying_ratio: 0.0,
         end_s: 0.7,
         outcome_by_s: None,
         output_step_s: Some(0.1),

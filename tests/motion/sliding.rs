@@ -115,7 +115,6 @@ fn equal(step_s: f64, end_s: f64, coefficient: f64) -> Settings {
         longest_step_s: step_s,
         shortest_step_s: step_s,
         merged_after: 0,
-        decaying_ratio: 0.0,
         end_s,
         outcome_by_s: None,
         output_step_s: None,

@@ -43,7 +43,6 @@ fn run(
         longest_step_s: step_s,
         shortest_step_s: step_s,
         merged_after: 0,
-        decaying_ratio: 0.0,
         may_halve: false,
         end_s,
         outcome_by_s: None,

@@ -49,7 +49,9 @@ fn single(row: &FreeHinges, map: &OverturningMap<'_>, amplitude_g: f64, duration
         .scenario
         .request_on(map.scenario.ground_motion(), &map.scenario.structure);
     let case = [(ground, request)];
-    let mut row = row.for_many_cases().unwrap();
+    let mut row = row
+        .for_many_cases()
+        .unwrap_or_else(|| Box::new(row.clone()));
     row.repeat_mirrored();
     Ending::of_all(&*row, &case).remove(0).unwrap()
 }

@@ -102,6 +102,9 @@ impl Shaking<'_> {
             (tried, fine) = self.search_below(safe, found, runner, &mut watch)?;
             others.extend(tried);
         }
+        if let (Some(safe), Some(_)) = (safe, self.faster) {
+            self.compute_demand_again(safe, &mut samples, &mut fine.histories);
+        }
         let threshold = Threshold {
             direction: self.direction,
             ..Threshold::new(first.model, *self.searched, samples, &edges)
@@ -180,6 +183,38 @@ impl Shaking<'_> {
             let found = self.compute_in_parallel(&factors, compute, runner, watch)?;
             for (index, sample) in wanted.into_iter().zip(found) {
                 (samples[index], again[index]) = (sample, true);
+            }
+        }
+    }
+
+    /// Computes the largest friction demand up to a safe factor, which is quoted, with the steps of a run: again and again, until the largest one has these
+    /// steps.
+    fn compute_demand_again(
+        &self,
+        safe: f64,
+        samples: &mut [FactorSample],
+        fine: &mut [FineHistory],
+    ) {
+        let mut again = Vec::new();
+        loop {
+            let endings = samples.iter_mut().filter_map(|sample| {
+                let ending = sample.result.as_mut().ok()?;
+                Some((sample.factor, &mut ending.friction_demand))
+            });
+            let fine = fine.iter_mut();
+            let fine = fine.map(|history| (history.factor, &mut history.friction_demand));
+            let up_to_safe = endings.chain(fine).filter(|(factor, _)| *factor <= safe);
+            let largest = up_to_safe.max_by(|(_, one), (_, other)| {
+                let value = |demand: &Option<f64>| demand.unwrap_or(0.0);
+                value(one).total_cmp(&value(other))
+            });
+            match largest {
+                Some((factor, demand)) if demand.is_some() && !again.contains(&factor) => {
+                    again.push(factor);
+                    let sample = self.samples(self.model, &[factor]).remove(0);
+                    *demand = sample.result.ok().and_then(|ending| ending.friction_demand);
+                }
+                _ => return,
             }
         }
     }

@@ -13,8 +13,6 @@ pub const MANY_CASES_STEP_RATIO: f64 = 1.1 / 0.34;
 pub const MANY_SLIDING_CASES_STEP_RATIO: f64 = 3.0;
 /// Number of impacts within the shortest step after which the next landings are merged; an infinite series of impacts would stop time.
 const CLUSTER_IMPACTS: usize = 50;
-/// Energy on quiet ground, over the largest potential energy, below which the half cycles of a history are too small to be compared with others.
-const DECAYING_RATIO: f64 = 0.01;
 /// Time after an impact in which a repetition merges landings, over the shortest step.
 const MERGED_RATIO: f64 = 4.0;
 /// Ratio of the step to the longest stable step of a single block between ties. Closed joints combine blocks to heavier bodies with longer stable
@@ -30,7 +28,6 @@ impl Settings {
             longest_step_s,
             shortest_step_s: SHORTEST_STEP_RATIO * longest_step_s,
             merged_after: CLUSTER_IMPACTS,
-            decaying_ratio: DECAYING_RATIO,
             end_s,
             ..Self::default()
         }

@@ -17,8 +17,6 @@ pub struct Settings {
     pub shortest_step_s: f64,
     /// Number of impacts within the shortest step after which landings are merged.
     pub merged_after: usize,
-    /// Energy of a motion on quiet ground, over its largest potential energy, below which more landings are merged.
-    pub decaying_ratio: f64,
     /// End of the motion, in seconds.
     pub end_s: f64,
     /// Latest end of a motion that is incomplete at its end, in seconds; see [`Request`](crate::dynamics::request::Request).

@@ -4,7 +4,7 @@ use super::{ContactProgram, Load};
 use crate::mechanics::{Placement, Row};
 
 /// Tolerance of the closure error, relative to the thickness of the thinnest joint.
-const CLOSURE_RATIO: f64 = 1e-11;
+const CLOSURE_RATIO: f64 = 1e-13;
 
 /// Solver that removes closure errors, with its work space.
 #[derive(Clone, Debug)]

@@ -38,8 +38,6 @@ const LANDED_RATIO: f64 = 1e-9;
 /// Largest gap, over the thickness, at which the last three open corners of an arch belong to an impact. They must satisfy three closure equations,
 /// which only closed joints do.
 const LAST_THREE_RATIO: f64 = 1e-6;
-/// Time after an impact in which landings of a decaying motion are merged, over the longest step.
-const DECAYING_STEP_RATIO: f64 = 0.5;
 /// Decrease of potential energy below that at rest, over weight times size, at which a row has overturned.
 const FALLEN_ENERGY_RATIO: f64 = 1e-3;
 
@@ -259,19 +257,9 @@ impl<'a> LandingStepper<'a> {
         self.turning = pivots;
     }
 
-    /// Time after an impact, in seconds, within which landings are merged: after too many impacts within the shortest step, and while the motion
-    /// decays; otherwise zero.
-    fn merged_s(&self) -> f64 {
-        let (observer, settings) = (&self.observer, &self.observer.input.settings);
-        let largest_j = settings.decaying_ratio * observer.row_summary.largest_potential_j;
-        let energy_j = observer.kinetic + observer.potential;
-        if energy_j < largest_j && observer.time > observer.input.ground.end_s() {
-            DECAYING_STEP_RATIO * settings.longest_step_s
-        } else if self.cluster.impacts > settings.merged_after {
-            settings.shortest_step_s
-        } else {
-            0.0
-        }
+    /// Whether the last step ended at an impact after too many impacts within the shortest step, so that the next landings are merged.
+    fn has_impact_cluster(&self) -> bool {
+        self.has_just_landed() && self.cluster.impacts > self.observer.input.settings.merged_after
     }
 
     /// Whether the last step ended at an impact.

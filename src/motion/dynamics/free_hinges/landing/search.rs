@@ -33,9 +33,8 @@ impl LandingStepper<'_> {
     /// Solves the step that ends at the first landing, or the longest step without a landing. The step length affects the kick and therefore the
     /// landing.
     pub(super) fn solve_to_landing(&mut self, longest: f64) -> Result<LandingStep, RowMotionError> {
-        let merged_s = self.merged_s().min(longest);
-        let floor = if self.has_just_landed() {
-            merged_s
+        let floor = if self.has_impact_cluster() {
+            self.observer.input.settings.shortest_step_s.min(longest)
         } else {
             0.0
         };
@@ -84,8 +83,7 @@ impl LandingStepper<'_> {
             }
             .clamp(floor, longest);
         }
-        let shortest_s = self.observer.input.settings.shortest_step_s.min(longest);
-        let length_s = merged_s.max(shortest_s);
+        let length_s = self.observer.input.settings.shortest_step_s.min(longest);
         self.merge(length_s)?;
         Ok(LandingStep {
             expected_s: length_s,

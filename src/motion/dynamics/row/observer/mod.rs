@@ -40,7 +40,7 @@ pub struct MotionObserver<'a> {
     /// Potential energy above the undeformed row, in J.
     pub potential: f64,
     /// Kinetic energy after the last step, in J.
-    pub kinetic: f64,
+    pub(super) kinetic: f64,
     /// Horizontal displacement of the centre of gravity times the mass, without the slip of the row along the ground, in kg m.
     pub sway: f64,
     /// True once a joint has opened or slipped; for elastic joints, once the row has moved with more energy than at rest.
