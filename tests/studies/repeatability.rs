@@ -252,11 +252,11 @@ fn the_largest_half_cycle_decides_on_more_repetitions() {
     assert_eq!((spread.outcomes.len(), spread.count.of), (7, 7));
     let survives = |outcome: &Outcome| Verdict::from(*outcome) == Verdict::Survives;
     assert!(spread.outcomes[..3].iter().all(survives) && !spread.count.path_repeats);
-    let short = spread
+    let quarter = spread
         .repeated
         .iter()
-        .position(|name| *name == "steps times 0.35");
-    assert!(!survives(&spread.outcomes[short.unwrap() + 1]));
+        .position(|name| *name == "quarter steps");
+    assert!(!survives(&spread.outcomes[quarter.unwrap() + 1]));
     assert_eq!(ending.verdict(), Verdict::Uncertain);
     let share = spread.count.overturns_in as f64 / 7.0;
     assert_eq!(ending.overturning_share(), Some(share));

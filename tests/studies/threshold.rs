@@ -926,17 +926,21 @@ fn a_column_of_drums_has_a_threshold_with_free_hinges() {
             &["`drums = 3`"],
         );
     }
-    // Its samples equal plain histories.
+    // Its samples equal plain histories, with the steps of a run or of many cases.
     let scenario = Scenario::read(&folder.join("s.toml")).unwrap();
     let model = scenario.model().unwrap();
     let samples = drummed["samples"].as_array().unwrap();
-    assert_eq!(samples.len(), 5);
+    let faster = model.for_many_cases().unwrap();
+    assert!(samples.len() >= 5);
     for sample in samples {
         let factor = sample["factor"].as_f64().unwrap();
         let ground = scenario.ground_motion().scaled(factor).unwrap();
-        let summary = model.simulate(&ground, &scenario.request(), None).unwrap();
-        assert_eq!(sample["outcome"], summary.outcome.name());
-        assert_eq!(sample["peak_rotation_rad"], summary.largest_rotation_rad());
+        let is_of = |model: &dyn Model| {
+            let summary = model.simulate(&ground, &scenario.request(), None).unwrap();
+            sample["outcome"] == summary.outcome.name()
+                && sample["peak_rotation_rad"] == summary.largest_rotation_rad()
+        };
+        assert!(is_of(&*model) || is_of(&*faster), "{sample}");
     }
     let outcomes: Vec<_> = samples.iter().map(|sample| &sample["outcome"]).collect();
     assert!(

@@ -90,7 +90,7 @@ const OTHER_SETTINGS: [(&str, f64, bool); 6] = [
 const OTHER_STEPS: [(&str, f64); 6] = [
     ("half steps", 0.5),
     ("double steps", 2.0),
-    ("steps times 0.35", 0.35),
+    ("quarter steps", 0.25),
     ("steps times 0.7", 0.7),
     ("steps times 1.4", 1.4),
     ("steps times 1.7", 1.7),
