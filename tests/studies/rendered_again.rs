@@ -148,7 +148,7 @@ fn the_page_of_a_map_is_rendered_again_from_its_data() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let uncertain = UNCERTAIN_ARCH.to_owned()
-        + "[map]\nduration_s = [0.46925101434657324, 0.5]\namplitude_g = [0.6, 0.8155]\n";
+        + "[map]\nduration_s = [0.46925101434657324, 0.5]\namplitude_g = [0.6, 0.8215]\n";
     fs::write(at.join("uncertain.toml"), uncertain).unwrap();
     let semicircle = scenarios().join("semicircle-map.toml");
     let semicircle = semicircle.to_str().unwrap();
