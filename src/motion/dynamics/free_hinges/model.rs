@@ -91,9 +91,9 @@ const OTHER_STEPS: [(&str, f64); 6] = [
     ("half steps", 0.5),
     ("double steps", 2.0),
     ("quarter steps", 0.25),
+    ("steps times 0.35", 0.35),
     ("steps times 0.7", 0.7),
     ("steps times 1.4", 1.4),
-    ("steps times 1.7", 1.7),
 ];
 /// Step length proposed after an error of the energy balance, over the longest step.
 const SHORTER: f64 = 0.2;
