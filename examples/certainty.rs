@@ -23,7 +23,7 @@ use archrock::{
 use random::Random;
 
 /// Steps of the judging histories over the default ones. With elastic joints, longer steps may be unstable.
-const RIGID: [f64; 6] = [0.15, 0.3, 0.45, 0.85, 1.55, 3.0];
+const RIGID: [f64; 6] = [0.15, 0.3, 0.6, 0.85, 1.7, 3.0];
 const ELASTIC: [f64; 6] = [0.13, 0.3, 0.45, 0.6, 0.8, 1.15];
 const GRAVITY_M_S2: f64 = 9.81;
 
