@@ -11,7 +11,7 @@ use super::impulse_line::ImpulseLine;
 use super::limit::Incipient;
 use super::linkage::Linkage;
 use super::mechanism::{FourLink, HingeSites};
-use super::thrust::SectionGroup;
+use super::thrust::ProfileSection;
 use crate::mechanics::chain::critical_rad;
 use crate::mechanics::{ImpactLaw, Link, Profile};
 
@@ -56,7 +56,7 @@ pub struct Chain {
     /// The profile in the frames in which the mechanisms with an even and with an odd number of impacts sway right.
     profiles: [Arc<dyn Profile>; 2],
     /// Sections of both profiles at which the excess of thrust lines is computed.
-    sections: [Vec<SectionGroup>; 2],
+    sections: [Vec<ProfileSection>; 2],
     /// Sections at which hinges may form.
     pub sites: HingeSites,
     law: ImpactLaw,
@@ -79,7 +79,7 @@ impl Chain {
     ) -> Self {
         let sections = profiles
             .each_ref()
-            .map(|profile| SectionGroup::all(&**profile, sites));
+            .map(|profile| ProfileSection::all(&**profile, sites));
         Self {
             profiles,
             sections,
@@ -97,7 +97,7 @@ impl Chain {
     }
 
     /// Sections of that profile at which the excess of thrust lines is computed.
-    pub(crate) fn sections(&self, impacts: usize) -> &[SectionGroup] {
+    pub(crate) fn sections(&self, impacts: usize) -> &[ProfileSection] {
         &self.sections[impacts % 2]
     }
 

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::mechanism::FourLink;
-use super::thrust::{PartLoad, SectionGroup, ThrustLine, ThrustPart, demand_at_sections};
+use super::thrust::{PartLoad, ProfileSection, ThrustLine, ThrustPart, demand_at_sections};
 use crate::mechanics::chain::{Coefficients, MechanismState};
 use crate::mechanics::geometry::field::quarter_turn;
 use crate::mechanics::geometry::pose::product;
@@ -167,7 +167,7 @@ impl Linkage {
     pub(crate) fn demand_at_sections(
         &self,
         motion: &MechanismState,
-        sections: &[SectionGroup],
+        sections: &[ProfileSection],
     ) -> Demand {
         demand_at_sections(&self.parts(motion), sections)
     }

@@ -12,7 +12,6 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use nalgebra::Vector2;
-use pulp::Arch;
 
 use super::limit::Incipient;
 use super::mechanism::HingeSites;
@@ -71,26 +70,20 @@ fn excess_ratio(normal: f64, moment: f64, thickness: f64, least: f64) -> f64 {
     beyond / (normal.max(least) * thickness)
 }
 
-/// Number of sections whose demands are computed side by side.
-const LANES: usize = 8;
-
-/// Sections of a profile with their constants, for many thrust lines through them. The last one may be repeated to fill the group.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct SectionGroup {
-    place: [f64; LANES],
-    /// Mass, first moments and polar moment before each section.
-    mass: [f64; LANES],
-    first: [[f64; LANES]; 2],
-    polar: [f64; LANES],
-    onward: [[f64; LANES]; 2],
-    middle: [[f64; LANES]; 2],
-    thickness: [f64; LANES],
+/// Section of a profile with its constants, for many thrust lines through it.
+#[derive(Clone, Copy, Debug)]
+pub struct ProfileSection {
+    place: f64,
+    before: MassMoments,
+    onward: Vector2<f64>,
+    middle: Vector2<f64>,
+    thickness: f64,
 }
 
-/// Parts of a continuous ring between the sections of [`SectionGroup::all`].
+/// Parts of a continuous ring between the sections of [`ProfileSection::all`].
 const EXCESS_PARTS: usize = 48;
 
-impl SectionGroup {
+impl ProfileSection {
     /// Joints of a profile, or equidistant sections of a continuous ring. Between these the excess exceeds the largest of them by some
     /// per cent of its value at most.
     pub(crate) fn all(profile: &dyn Profile, sites: HingeSites) -> Vec<Self> {
@@ -98,118 +91,44 @@ impl SectionGroup {
             HingeSites::Voussoirs(count) => count,
             HingeSites::Anywhere => EXCESS_PARTS,
         };
-        let places = profile.sections(parts);
-        let group = |places: &[f64]| {
-            let mut group = Self::default();
-            for lane in 0..LANES {
-                let place = places[lane.min(places.len() - 1)];
-                let before = profile.moments_to(place);
-                let (onward, middle) = (profile.onward_normal(place), profile.middle(place));
-                group.place[lane] = place;
-                group.mass[lane] = before.mass;
-                group.polar[lane] = before.polar;
-                group.thickness[lane] = profile.thickness(place);
-                for axis in 0..2 {
-                    group.first[axis][lane] = before.first[axis];
-                    group.onward[axis][lane] = onward[axis];
-                    group.middle[axis][lane] = middle[axis];
-                }
-            }
-            group
+        let of = |place: f64| Self {
+            place,
+            before: profile.moments_to(place),
+            onward: profile.onward_normal(place),
+            middle: profile.middle(place),
+            thickness: profile.thickness(place),
         };
-        places.chunks(LANES).map(group).collect()
-    }
-
-    /// Adds the demands of the sections under the loads of their parts to the largest ones of each lane. All loops over lanes are the same operations
-    /// as for one section, in the same order.
-    #[inline(always)]
-    fn add_demands(
-        &self,
-        loads: &PartLoads,
-        least: f64,
-        [excess, friction]: &mut [[f64; LANES]; 2],
-    ) {
-        let PartLoads {
-            start,
-            force,
-            turning,
-            centrifugal,
-        } = loads;
-        let [first_x, first_y] = &self.first;
-        for lane in 0..LANES {
-            let (x, y, rate) = (first_x[lane], first_y[lane], turning[lane]);
-            let (mass, kappa) = (self.mass[lane], centrifugal[lane]);
-            let linear_x = start[0][lane] + (force[0][lane] * mass - y * rate + x * kappa);
-            let linear_y = start[1][lane] + (force[1][lane] * mass + x * rate + y * kappa);
-            let turned = x * force[1][lane] - y * force[0][lane];
-            let angular = start[2][lane] + (turned + self.polar[lane] * rate);
-            let [onward_x, onward_y] = [self.onward[0][lane], self.onward[1][lane]];
-            let normal = linear_x * onward_x + linear_y * onward_y;
-            // The components along the section and along the axis are perpendicular; signs do not matter.
-            let tangential = linear_x * onward_y - linear_y * onward_x;
-            let moment =
-                angular - (self.middle[0][lane] * linear_y - self.middle[1][lane] * linear_x);
-            let (pressed, thickness) = (normal.max(least), self.thickness[lane]);
-            let beyond = moment.abs() - 0.5 * normal * thickness;
-            excess[lane] = excess[lane].max(beyond / (pressed * thickness));
-            let demand = tangential.abs() / pressed;
-            friction[lane] = friction[lane].max(if normal >= least { demand } else { 0.0 });
-        }
-    }
-}
-
-/// Loads of the parts at the sections of a group: [`ThrustPart`] by its numbers.
-#[derive(Default)]
-struct PartLoads {
-    start: [[f64; LANES]; 3],
-    force: [[f64; LANES]; 2],
-    turning: [f64; LANES],
-    centrifugal: [f64; LANES],
-}
-
-impl PartLoads {
-    fn set(&mut self, lane: usize, part: &ThrustPart) {
-        let (start, load) = (&part.start, &part.load);
-        let numbers = [start.linear.x, start.linear.y, start.angular];
-        for (lanes, number) in self.start.iter_mut().zip(numbers) {
-            lanes[lane] = number;
-        }
-        for axis in 0..2 {
-            self.force[axis][lane] = load.turning.at_center[axis];
-        }
-        self.turning[lane] = load.turning.rate;
-        self.centrifugal[lane] = load.centrifugal;
+        profile.sections(parts).into_iter().map(of).collect()
     }
 }
 
 /// Thrust excess and friction demand over these parts, at sections in ascending order.
-pub(crate) fn demand_at_sections(parts: &[ThrustPart], sections: &[SectionGroup]) -> Demand {
-    let weight = sections.last().map_or(0.0, |group| group.mass[LANES - 1]);
+pub(crate) fn demand_at_sections(parts: &[ThrustPart], sections: &[ProfileSection]) -> Demand {
+    let weight = sections.last().map_or(0.0, |section| section.before.mass);
     let least = LEAST_LOAD * weight;
-    let [excess, friction] = Arch::new().dispatch(
-        #[inline(always)]
-        || {
-            let (mut parts, mut largest) = (parts, [[ROUNDING; LANES], [0.0; LANES]]);
-            for group in sections {
-                // A section beyond the last part has no load, and no demand.
-                let mut loads = PartLoads::default();
-                for (lane, place) in group.place.iter().enumerate() {
-                    while let [part, _, ..] = parts
-                        && part.end_rad < *place
-                    {
-                        parts = &parts[1..];
-                    }
-                    if let Some(part) = parts.first() {
-                        loads.set(lane, part);
-                    }
-                }
-                group.add_demands(&loads, least, &mut largest);
-            }
-            largest.map(|lanes| lanes.into_iter().fold(0.0, f64::max))
-        },
-    );
+    let (mut parts, mut largest, mut friction) = (parts, ROUNDING, 0.0_f64);
+    for section in sections {
+        while let [part, _, ..] = parts
+            && part.end_rad < section.place
+        {
+            parts = &parts[1..];
+        }
+        let Some(part) = parts.first() else {
+            break;
+        };
+        let resultant = part.start + part.load.resultant(&section.before);
+        let normal = resultant.linear.dot(&section.onward);
+        // As in `SectionResultant`; the sign does not matter.
+        let moment = resultant.moment_about(section.middle);
+        largest = largest.max(excess_ratio(normal, moment, section.thickness, least));
+        if normal >= least {
+            // The components along the section and along the axis are perpendicular.
+            let tangential = resultant.linear.perp(&section.onward);
+            friction = friction.max(tangential.abs() / normal);
+        }
+    }
     Demand {
-        excess_ratio: if excess > ROUNDING { excess } else { 0.0 },
+        excess_ratio: if largest > ROUNDING { largest } else { 0.0 },
         friction,
     }
 }
