@@ -637,8 +637,9 @@ pub struct RowSummary {
     /// Slip; `None` if joints do not slip.
     #[serde(flatten)]
     pub sliding: Option<Sliding>,
-    /// Largest potential energy over the barrier of the first mechanism; the row may overturn by another mechanism. `None` if the barrier is unknown,
-    /// or if friction dissipated more than a hundredth of it.
+    /// Largest potential energy over the barrier of the first mechanism; the row may overturn by another mechanism. Of a row
+    /// that slips, above its least potential energy. `None` if the barrier is unknown, or if a joint slipped by a hundredth of the thickness of the
+    /// thinnest one, and friction dissipated more than a hundredth of the barrier.
     pub peak_potential_over_barrier: Option<f64>,
     /// Forces and energies of the ties; absent without ties.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

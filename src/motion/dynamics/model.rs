@@ -91,8 +91,8 @@ pub trait Model: Debug + Send + Sync {
         false
     }
 
-    /// This model with the longer steps of a study of many cases; `None` if its steps are given, or follow from a tolerance. Few verdicts change, and
-    /// those that do are those of histories close to overturning.
+    /// This model with the longer steps of a study of many cases; `None` if its longest step is given, or its steps follow from a tolerance. Verdicts
+    /// seldom change; docs/maps.md has a measurement.
     fn for_many_cases(&self) -> Option<Box<dyn Model>> {
         None
     }

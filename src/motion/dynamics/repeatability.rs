@@ -391,9 +391,7 @@ fn repetitions_suffice<'a>(
 ) -> bool {
     let verdict = Verdict::from(own.outcome);
     let is_clear = |motion: &Summary| needs_no_repetition(model, request, motion);
-    // With friction no repeated path of 78 was contradicted in 468 histories with other steps, close to the barrier or not.
     let is_close = verdict == Verdict::Survives
-        && !model.slips()
         && energy_over_barrier(model, request, own).is_some_and(|ratio| ratio > CLOSE_TO_BARRIER);
     let confirms = |other: &Summary| {
         let repeats = || !is_close && path_repeats(own, other);

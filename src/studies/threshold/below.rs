@@ -79,7 +79,8 @@ impl Closeness {
     /// Closeness at an edge.
     pub const EDGE: Self = Self(1.0);
 
-    /// Closeness of a history. Where the barrier is unknown, or joints slip, steps are not halved: all of them would be, at eight times the cost.
+    /// Closeness of a history. Where the barrier is unknown, as after large slip, steps are not halved: all of them would be, at eight times the
+    /// cost.
     fn of(
         model: &dyn Model,
         request: &Request,
@@ -94,7 +95,6 @@ impl Closeness {
         let own = history.peak_over_critical().map(of_mechanism);
         Self(
             own.or_else(|| energy_over_barrier(model, request, history))
-                .filter(|_| !model.slips())
                 .unwrap_or(FAR),
         )
     }

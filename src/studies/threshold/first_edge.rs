@@ -123,12 +123,9 @@ impl FirstEdge {
         };
         let has_second = directions.has_second(&*model, ground, &request);
         let mirrored = has_second.then(|| ground.mirrored());
-        // Histories below the edge are repeated with the steps of a run if they do not survive.
-        let many_cases = model.for_many_cases();
-        let faster = many_cases.as_deref().unwrap_or(&*model);
         let histories = |factors: &[f64], _| {
             let under = |ground: &GroundMotion| {
-                FineHistory::of_all(faster, &request, factors, |factor| ground.scaled(factor))
+                FineHistory::of_all(&*model, &request, factors, |factor| ground.scaled(factor))
             };
             let own = under(ground);
             Ok::<_, NoAnswer>(match &mirrored {

@@ -340,8 +340,8 @@ impl Shaking<'_> {
             .collect()
     }
 
-    /// Finds the edge between neighbouring factors with different verdicts, one of a number of `edges`. If a history has a third verdict, returns this history and the edges
-    /// on both sides of it; if a history fails, returns that history. The other histories come with it.
+    /// Finds the edge between neighbouring factors with different verdicts, one of a number of `edges`. If a history has a third verdict, returns this
+    /// history and the edges on both sides of it; if a history fails, returns that history. The other histories come with it.
     fn search(&self, (below, above): Change<'_>, edges: usize) -> Vec<EdgeStep> {
         let is_uncertain = [below, above]
             .map(FactorSample::verdict)

@@ -188,16 +188,20 @@ impl FreeHinges {
     /// Numerical settings of a motion.
     fn settings(&self, request: &Request) -> Settings {
         let (row, gravity_m_s2, end_s) = (self.row(), request.gravity_m_s2, request.end_s);
-        let mut settings = match self.options.friction_coefficient {
-            None => Settings::to_landings(row, gravity_m_s2, end_s),
-            Some(_) => Settings::equal(row, gravity_m_s2, end_s),
+        let of = |(settings, many_cases_ratio): (Settings, f64)| match self.many_cases {
+            true => settings.times(many_cases_ratio),
+            false => settings,
         };
-        if self.many_cases {
-            settings = settings.times(match self.options.friction_coefficient {
-                None => MANY_CASES_STEP_RATIO,
-                Some(_) => MANY_SLIDING_CASES_STEP_RATIO,
-            });
-        }
+        let mut settings = of(match self.options.friction_coefficient {
+            None => (
+                Settings::to_landings(row, gravity_m_s2, end_s),
+                MANY_CASES_STEP_RATIO,
+            ),
+            Some(_) => (
+                Settings::equal(row, gravity_m_s2, end_s),
+                MANY_SLIDING_CASES_STEP_RATIO,
+            ),
+        });
         if let Some(longest_s) = self.options.longest_step_s {
             settings = settings.times(longest_s / settings.longest_step_s);
         }
@@ -254,12 +258,7 @@ impl Model for FreeHinges {
     }
 
     fn for_many_cases(&self) -> Option<Box<dyn Model>> {
-        let RowOptions {
-            longest_step_s,
-            shortest_step_s,
-            ..
-        } = self.options;
-        longest_step_s.or(shortest_step_s).is_none().then(|| {
+        self.options.longest_step_s.is_none().then(|| {
             Box::new(Self {
                 many_cases: true,
                 ..self.clone()

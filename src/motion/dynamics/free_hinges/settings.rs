@@ -9,7 +9,8 @@ const SHORTEST_STEP_RATIO: f64 = 1.0 / 30.0;
 /// Ratio of the steps in studies of many cases to those of a single run. With these steps, the second peaks of 8 of 73 random arches differ by more
 /// than 1 % from those with the shortest steps; with the steps of a single run, those of 5 arches differ.
 pub const MANY_CASES_STEP_RATIO: f64 = 1.1 / 0.34;
-/// [`MANY_CASES_STEP_RATIO`] of joints that slip.
+/// [`MANY_CASES_STEP_RATIO`] of joints that slip. With these steps, all verdicts of 200 random cells are those of single runs, and 90 % of the peaks
+/// differ by less than 1.8 %.
 pub const MANY_SLIDING_CASES_STEP_RATIO: f64 = 3.0;
 /// Number of impacts within the shortest step after which the next landings are merged; an infinite series of impacts would stop time.
 const CLUSTER_IMPACTS: usize = 50;
