@@ -17,12 +17,12 @@ use archrock::dynamics::{Cost, Details, Directions, MechanismSummary, Repetition
 use archrock::output::Figure;
 use archrock::scenario::{MODELS, ReadOptions, Source};
 use archrock::studies::threshold::{
-    EDGE_WIDTH, FactorRange, Factors, RangeEnd, Threshold, draw, results, threshold,
+    EDGE_WIDTH, FactorRange, FactorSample, Factors, RangeEnd, Threshold, draw, results, threshold,
 };
 use archrock::studies::{Progress, Runner, RunnerError, StudyError, Verdict, outcome_name};
 use archrock::{
-    Column, GroundMotion, ImpactModel, Model, Outcome, Pulse, Recorder, Request, RockingColumn,
-    Scenario, SimulationError, Summary, Sway,
+    Arch, Column, Ending, FreeHinges, GroundMotion, ImpactModel, Model, Outcome, Pulse, Recorder,
+    Request, RockingColumn, Scenario, SimulationError, Summary, Sway,
 };
 use archrock_motion::internals::hybrid::engine::EngineError;
 use nalgebra::Vector2;
@@ -101,6 +101,35 @@ fn step_pairs_overturn_seven_voussoirs_without_impact_from_the_known_amplitudes_
             assert!(sample.factor < last.from || history.impacts == Some(0));
         }
     }
+}
+
+/// Both sides of every edge, the last factor and the quoted friction demand have the steps of a run; other samples have longer ones.
+#[test]
+fn answers_have_the_steps_of_a_run() {
+    let arch = Arch::new(4.0, 0.15, 157.5).unwrap();
+    let model = FreeHinges::of_arch(&arch.with_voussoirs(7).unwrap()).unwrap();
+    let ground = pulse(Pulse::OneSine, 0.5, 0.4);
+    let threshold = found(&model, &ground, 10.0, &factors(0.5, 4.0, 0.05));
+    let run_s = model.longest_step_s(&request(10.0));
+    let samples = &threshold.samples;
+    let ending = |sample: &FactorSample| sample.result.clone().unwrap();
+    let is_of_run = |sample: &FactorSample| ending(sample).steps.unwrap().longest_s == run_s;
+    let edges = samples
+        .windows(2)
+        .filter(|pair| pair[0].verdict() != pair[1].verdict());
+    assert!(edges.clone().count() > 0);
+    assert!(edges.flatten().chain(samples.last()).all(is_of_run));
+    assert!(!samples.iter().all(is_of_run));
+    let safe = threshold.survives_up_to().unwrap();
+    let needed = samples.iter().filter(|sample| {
+        sample.factor <= safe && ending(sample).friction_demand == threshold.friction_demand
+    });
+    let [sample] = needed.collect::<Vec<_>>()[..] else {
+        panic!("{:?}", threshold.friction_demand);
+    };
+    let scaled = ground.scaled(sample.factor).unwrap();
+    let run = Ending::of(&model, &scaled, &request(10.0)).unwrap();
+    assert_eq!(run.friction_demand, threshold.friction_demand);
 }
 
 fn overturns(model: &dyn Model, ground: &GroundMotion, end_s: f64, factor: f64) -> bool {
