@@ -661,8 +661,8 @@ fn the_least_step_pair_that_overturns_drums_is_the_published_one() {
     }
 }
 
-/// Joints of this arch slip to and fro by less than 0.3 mm, which takes 5 % of its energy barrier. The barrier is still known, and the row comes as
-/// close to it as without slip, which changes the largest rotation by less than 5 %.
+/// Joints of this arch slip to and fro by less than 0.3 mm, which takes 9 % of its energy barrier. The barrier is still known, and the row comes as
+/// close to it as without slip: within 0.1 %, as measured, and so does the largest rotation, within 0.2 %.
 #[test]
 fn little_slip_leaves_the_barrier() {
     let model = FreeHinges::new(arch(180.0, 0.15, 24, 5.0)).unwrap();
@@ -686,17 +686,10 @@ fn little_slip_leaves_the_barrier() {
     let sliding = slid(&run);
     let offsets_m = sliding.largest_offsets_m.iter();
     let largest_m = offsets_m.fold(0.0_f64, |most, offset| most.max(offset.abs()));
-    println!(
-        "{ratio} {rigid_ratio} {} {} {} {}",
-        sliding.friction_j / barrier_j,
-        largest_m,
-        run.largest_rotation_rad(),
-        rigid.largest_rotation_rad()
-    );
-    assert!(sliding.friction_j > 0.03 * barrier_j && largest_m < 3e-4);
-    assert!((run.largest_rotation_rad() / rigid.largest_rotation_rad() - 1.0).abs() < 0.05);
+    assert!(sliding.friction_j > 0.05 * barrier_j && largest_m < 3e-4);
+    assert!((run.largest_rotation_rad() / rigid.largest_rotation_rad() - 1.0).abs() < 0.01);
     assert!(
-        (ratio / rigid_ratio - 1.0).abs() < 0.05,
+        (ratio / rigid_ratio - 1.0).abs() < 0.01,
         "{ratio} {rigid_ratio}"
     );
 }

@@ -109,8 +109,8 @@ fn answers_have_the_steps_of_a_run() {
     let arch = Arch::new(4.0, 0.15, 157.5).unwrap();
     let model = FreeHinges::of_arch(&arch.with_voussoirs(7).unwrap()).unwrap();
     let ground = pulse(Pulse::OneSine, 0.5, 0.4);
-    let threshold = found(&model, &ground, 10.0, &factors(0.5, 4.0, 0.05));
-    let run_s = model.longest_step_s(&request(10.0));
+    let threshold = found(&model, &ground, 5.0, &factors(0.8, 2.5, 0.1));
+    let run_s = model.longest_step_s(&request(5.0));
     let samples = &threshold.samples;
     let ending = |sample: &FactorSample| sample.result.clone().unwrap();
     let is_of_run = |sample: &FactorSample| ending(sample).steps.unwrap().longest_s == run_s;
@@ -128,7 +128,7 @@ fn answers_have_the_steps_of_a_run() {
         panic!("{:?}", threshold.friction_demand);
     };
     let scaled = ground.scaled(sample.factor).unwrap();
-    let run = Ending::of(&model, &scaled, &request(10.0)).unwrap();
+    let run = Ending::of(&model, &scaled, &request(5.0)).unwrap();
     assert_eq!(run.friction_demand, threshold.friction_demand);
 }
 
