@@ -109,7 +109,7 @@ fn answers_have_the_steps_of_a_run() {
     let arch = Arch::new(4.0, 0.15, 157.5).unwrap();
     let model = FreeHinges::of_arch(&arch.with_voussoirs(7).unwrap()).unwrap();
     let ground = pulse(Pulse::OneSine, 0.5, 0.4);
-    let threshold = found(&model, &ground, 5.0, &factors(0.8, 2.5, 0.1));
+    let threshold = found(&model, &ground, 5.0, &factors(0.5, 3.0, 0.05));
     let run_s = model.longest_step_s(&request(5.0));
     let samples = &threshold.samples;
     let ending = |sample: &FactorSample| sample.result.clone().unwrap();
