@@ -1028,11 +1028,9 @@ fn reference_velocities(
                 .map_or(Vector2::zeros(), |p| p.centre_m)
         };
         let left = joint.checked_sub(1);
-        let sides = contacts[joint].gradients(
-            &faces[joint],
-            left.map_or(Vector2::zeros(), centre),
-            centre(joint),
-        );
+        let sides = contacts[joint]
+            .frame(&faces[joint])
+            .gradients([left.map_or(Vector2::zeros(), centre), centre(joint)]);
         for (block, rows) in [left, Some(joint)].into_iter().zip(sides) {
             if let Some(block) = block.filter(|block| *block < blocks) {
                 gradients
@@ -1124,10 +1122,12 @@ fn every_step_solves_the_complementarity_problem() {
         let lift = if (count / 70) % 3 == 2 { 1.2 } else { 0.0 };
         let kick = Vector3::new(push, lift - 1.0, 0.0) * (GRAVITY * step);
         let free: Vec<Vector3<f64>> = velocities.iter().map(|v| v + kick).collect();
-        let before = program.impulses.to_vec();
         program.set_positions(&faces, &contacts, &positions);
         program.load(|block| free[block]);
-        let solution = program.solve(|joint| lags[joint], 1e-9 * (GRAVITY * step + fastest));
+        let tolerance = 1e-9 * (GRAVITY * step + fastest);
+        program.solve(|joint| lags[joint], tolerance);
+        let before = program.impulses.to_vec();
+        let solution = program.solve(|joint| lags[joint], tolerance);
         assert!(solution.bound_error < 1e-9, "{count} {solution:?}");
         let judge = reference_velocities(
             &row,

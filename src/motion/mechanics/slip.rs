@@ -215,34 +215,100 @@ impl FaceContact {
         }
     }
 
-    /// Rates of the three coordinates for a translation of the right block.
-    pub fn rates_of_translation(&self, faces: &Faces, velocity_m_s: Vector2<f64>) -> Vector3<f64> {
-        let [_, right] = self.gradients(faces, self.middle_m, self.middle_m);
-        right * velocity_m_s.push(0.0)
-    }
-
-    /// Gradients of the three coordinates, one row each, by the velocity (x, y) and the rotation rate of the left block, then of the
-    /// right block. `left_m` and `right_m` are the centres of the blocks.
-    pub fn gradients(
-        &self,
-        faces: &Faces,
-        left_m: Vector2<f64>,
-        right_m: Vector2<f64>,
-    ) -> [Matrix3<f64>; 2] {
+    /// Directions of the three coordinates.
+    pub fn frame(&self, faces: &Faces) -> ContactFrame {
         let s = faces.handedness;
         let c = self.half.x;
-        let lean = self.lean(faces);
+        let squared = c * c;
+        ContactFrame {
+            middle_m: self.middle_m,
+            tangent: self.tangent,
+            normal: self.normal,
+            lean: self.lean(faces),
+            couples_m: [
+                s * self.ends_m[0] / squared,
+                s * (self.ends_m[1] / squared - faces.thickness_m * self.half.y * self.half.y / c),
+            ],
+        }
+    }
+}
+
+/// Directions of the three coordinates of a joint: of their rates for a motion of the right block relative to the left one, and of the impulses on
+/// the right block that belong to them.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactFrame {
+    /// Point at which relative velocities are taken, and about which moments are.
+    pub middle_m: Vector2<f64>,
+    tangent: Vector2<f64>,
+    normal: Vector2<f64>,
+    lean: f64,
+    /// Moments of unit impulses at both ends.
+    couples_m: [f64; 2],
+}
+
+impl ContactFrame {
+    /// Frame without directions.
+    pub(crate) const NONE: Self = Self {
+        middle_m: Vector2::new(0.0, 0.0),
+        tangent: Vector2::new(0.0, 0.0),
+        normal: Vector2::new(0.0, 0.0),
+        lean: 0.0,
+        couples_m: [0.0; 2],
+    };
+
+    /// Rates of the three coordinates for a relative velocity at the middle, and a relative rotation rate.
+    pub fn rates(&self, velocity_m_s: Vector2<f64>, rotation_rad_s: f64) -> Vector3<f64> {
+        let (apart, along) = (
+            self.normal.dot(&velocity_m_s),
+            self.tangent.dot(&velocity_m_s),
+        );
+        let [intrados, extrados] = self.couples_m.map(|couple| couple * rotation_rad_s);
+        Vector3::new(
+            apart + self.lean * along + intrados,
+            apart - self.lean * along + extrados,
+            along,
+        )
+    }
+
+    /// Relative velocity at the middle and rotation rate with these rates of the coordinates: the inverse of [`Self::rates`].
+    pub(crate) fn motion(&self, rates_m_s: &Vector3<f64>) -> (Vector2<f64>, f64) {
+        let along = rates_m_s.z;
+        let [intrados, extrados] = [
+            rates_m_s.x - self.lean * along,
+            rates_m_s.y + self.lean * along,
+        ];
+        let rate = (intrados - extrados) / (self.couples_m[0] - self.couples_m[1]);
+        let apart = intrados - self.couples_m[0] * rate;
+        (self.normal * apart + self.tangent * along, rate)
+    }
+
+    /// Force on the right block, and its moment about the middle, of these impulses.
+    pub(crate) fn wrench(&self, impulses: &Vector3<f64>) -> (Vector2<f64>, f64) {
+        let along = impulses.z + self.lean * (impulses.x - impulses.y);
+        (
+            self.normal * (impulses.x + impulses.y) + self.tangent * along,
+            impulses.x * self.couples_m[0] + impulses.y * self.couples_m[1],
+        )
+    }
+
+    /// Impulses with this force on the right block, and this moment about the middle: the inverse of [`Self::wrench`].
+    pub(crate) fn impulses(&self, force: Vector2<f64>, moment: f64) -> Vector3<f64> {
+        let (normal, [first, second]) = (self.normal.dot(&force), self.couples_m);
+        let intrados = (moment - normal * second) / (first - second);
+        let extrados = normal - intrados;
+        let along = self.tangent.dot(&force) - self.lean * (intrados - extrados);
+        Vector3::new(intrados, extrados, along)
+    }
+
+    /// Gradients of the three coordinates, one row each, by the velocity (x, y) and the rotation rate of the left body, then of the
+    /// right body. `centres_m` are the centres of the bodies.
+    pub fn gradients(&self, centres_m: [Vector2<f64>; 2]) -> [Matrix3<f64>; 2] {
         let forces = [
-            self.normal + self.tangent * lean,
-            self.normal - self.tangent * lean,
+            self.normal + self.tangent * self.lean,
+            self.normal - self.tangent * self.lean,
             self.tangent,
         ];
-        let squared = c * c;
-        let couples = [
-            s * self.ends_m[0] / squared,
-            s * (self.ends_m[1] / squared - faces.thickness_m * self.half.y * self.half.y / c),
-            0.0,
-        ];
+        let couples = [self.couples_m[0], self.couples_m[1], 0.0];
         let rows = |centre_m: Vector2<f64>, sign: f64| {
             let arm = self.middle_m - centre_m;
             Matrix3::from_rows(&[0, 1, 2].map(|row| {
@@ -250,7 +316,7 @@ impl FaceContact {
                 RowVector3::new(force.x, force.y, turning) * sign
             }))
         };
-        [rows(left_m, -1.0), rows(right_m, 1.0)]
+        [rows(centres_m[0], -1.0), rows(centres_m[1], 1.0)]
     }
 }
 
@@ -293,7 +359,9 @@ mod tests {
                 (faces.contact(&left, &right), left, right)
             };
             let (contact, left, right) = place(&base);
-            let gradients = contact.gradients(&faces, left.centre_m, right.centre_m);
+            let gradients = contact
+                .frame(&faces)
+                .gradients([left.centre_m, right.centre_m]);
             assert!(contact.coordinates_m.z.abs() > 1e-3);
             for block in (0..2).filter(|side| sides[*side].is_some()) {
                 for axis in 0..3 {

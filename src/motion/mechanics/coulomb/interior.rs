@@ -11,7 +11,8 @@
 
 use nalgebra::{Matrix3, RowVector3, Vector3};
 
-use super::{Balance, JointMode, PASSES, SlipProgram, TangentialMode};
+use super::pins::{Balance, PASSES, PinProgram};
+use super::{JointMode, TangentialMode};
 
 const STEPS: usize = 60;
 /// Mean products, relative to the first one, at which the modes are tested.
@@ -166,7 +167,7 @@ impl Pairs {
     }
 }
 
-impl SlipProgram {
+impl PinProgram {
     /// Finds modes and impulses by Coulomb's law. Returns false if no start converges.
     pub(super) fn interior(&mut self, tolerance: f64, passes: &mut usize) -> bool {
         let mut starts = STARTS.iter();
@@ -307,13 +308,14 @@ impl SlipProgram {
 
 #[cfg(test)]
 mod tests {
+    use super::super::SlipProgram;
     use super::*;
     use crate::mechanics::blocks::Row;
     use crate::mechanics::geometry::ring::Ring;
     use crate::mechanics::slip::{FaceContact, Faces, Position};
 
     /// Largest violation of Coulomb's law, as a rate; impulses count as the rates that they cause.
-    fn largest_violation(program: &SlipProgram) -> f64 {
+    fn largest_violation(program: &PinProgram) -> f64 {
         let joints = program
             .impulses
             .iter()
@@ -371,9 +373,9 @@ mod tests {
                 .map(|_| Vector3::new(random(), random() - 0.5, 0.2 * random()))
                 .collect();
             program.load(|block| motions[block]);
-            for joint in 0..faces.len() {
-                program.drive[joint] = program.rate(joint, &program.free);
-            }
+            program.set_pins(true);
+            let mut row = program;
+            let mut program = row.program.clone();
             let mut other = program.clone();
             assert!(program.interior(1e-9, &mut 0), "{case}");
             assert!(other.complement(), "{case}");
@@ -391,9 +393,14 @@ mod tests {
                 "{case} {}",
                 largest_violation(&other)
             );
-            program.set_velocities();
-            other.set_velocities();
-            let miss = |block| (program.velocity(block) - other.velocity(block)).norm();
+            let mut velocities = |solved: &PinProgram| {
+                row.set_pins(true);
+                row.program.impulses.copy_from_slice(&solved.impulses);
+                row.read_pins();
+                row.velocities.clone()
+            };
+            let (found, judge) = (velocities(&program), velocities(&other));
+            let miss = |block: usize| (found[block] - judge[block]).norm();
             let miss = (0..positions.len()).map(miss).fold(0.0, f64::max);
             same += usize::from(miss < 1e-4);
             let modes = program.modes;

@@ -2,13 +2,14 @@
 
 use nalgebra::{DMatrix, Vector3};
 
-use super::{JointMode, PASSES, PROXIMAL, SlipProgram, TangentialMode};
+use super::pins::{PASSES, PROXIMAL, PinProgram};
+use super::{JointMode, TangentialMode};
 use crate::mechanics::complementarity;
 
 /// Maximum number of joints for Lemke's method; its effort grows with their cube.
 const COMPLEMENTED: usize = 80;
 
-impl SlipProgram {
+impl PinProgram {
     /// Finds modes and impulses by Lemke's method. Returns false if the row has too many joints, or if the method fails.
     pub(super) fn solve_by_pivoting(&mut self, tolerance: f64, passes: &mut usize) -> bool {
         if self.modes.len() > COMPLEMENTED || !self.complement() {

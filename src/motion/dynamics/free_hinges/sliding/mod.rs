@@ -225,7 +225,9 @@ impl<'a> SlidingStepper<'a> {
     /// Rates of the coordinates of a joint due to a velocity of the right support.
     fn right_support_rates(&self, joint: usize, velocity_m_s: Vector2<f64>) -> Vector3<f64> {
         if self.right.moves() && joint + 1 == self.faces.len() {
-            self.contacts[joint].rates_of_translation(&self.faces[joint], velocity_m_s)
+            self.contacts[joint]
+                .frame(&self.faces[joint])
+                .rates(velocity_m_s, 0.0)
         } else {
             Vector3::zeros()
         }
