@@ -11,6 +11,8 @@ use crate::mechanics::{Edge, Hinge, Pose};
 
 /// Least opening rate, relative to the fastest one, of a joint that an impact opens.
 const LEAST_OPENING: f64 = 1e-9;
+/// Rate of a gap after an impact, relative to the fastest one, up to which gravity probably closes it in the next step.
+const SLOW_RATIO: f64 = 1e-3;
 
 pub fn kinetic(pieces: &[MovingPiece]) -> f64 {
     let twice = |piece: &MovingPiece| {
@@ -182,8 +184,13 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         let taken_before = self.observer.row_summary.energy_taken_j;
         self.landing.fill([0.0; 2]);
         if self.has_just_landed() {
-            // Most corners that were in contact before the impact are in contact again under gravity.
-            self.press(|stepper, joint, edge| stepper.pressed[joint][edge]);
+            // Most corners that were in contact before the impact are in contact again under gravity, but for those that open fast.
+            self.note_rates();
+            let rates = self.program.open_joints().flat_map(|(_, rates)| rates);
+            let slow = SLOW_RATIO * rates.fold(0.0, f64::max);
+            self.press(|stepper, joint, edge| {
+                stepper.pressed[joint][edge] && stepper.earlier_rates[joint][edge] <= slow
+            });
         }
         let step = self.solve_to_landing(longest)?;
         self.record_step(&step);

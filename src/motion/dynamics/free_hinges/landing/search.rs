@@ -102,7 +102,7 @@ impl LandingStepper<'_> {
     }
 
     /// Stores the rates of the last solution for comparison with the next ones.
-    fn note_rates(&mut self) {
+    pub(super) fn note_rates(&mut self) {
         for (joint, rates) in self.program.open_joints() {
             self.earlier_rates[joint] = rates;
         }
