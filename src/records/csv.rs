@@ -38,7 +38,7 @@ fn parse(text: &str, layout: &Layout) -> Parsed<Contents> {
     let is_sure = by_name || contents.is_ok() && matches!(times, Times::Column(_));
     let row = decimal_commas(&table, layout.decimal).filter(|_| !is_sure);
     row.map_or(contents, |row| {
-        let text = excerpt(row.text);
+        let text = excerpt(row.text());
         Err(row.fault(format!(
             "the commas in `{text}` look like decimal marks: give `decimal = \"comma\"`, or a blank after each comma that \
              separates columns"
@@ -57,26 +57,32 @@ fn parse_table(
     let mut rows = Rows::new(text, layout.decimal).peekable();
     let names = rows.next_if(|row| by_name || row.has_no_number(layout.decimal));
     let line = names.as_ref().map_or(0, |row| row.line);
+    // A file that is too long is refused before its rows are read.
+    let mut lines = text.lines().zip(1..).filter(|(text, _)| is_row(text));
+    if let Some((_, line)) = lines.nth(MAX_SAMPLES + usize::from(names.is_some())) {
+        return Err(too_many(line));
+    }
     let first = rows.peek().ok_or_else(|| no_samples(text, line))?;
     let columns = Columns::find(layout, times.column(), names.as_ref(), first)?;
     let unit_s = columns.time_unit_s();
     let states_unit = unit
         .check_name(columns.name(columns.acceleration))
         .map_err(LineFault::on(line.max(1)))?;
-    let (mut clock, mut values) = (Clock::default(), Values::default());
-    let first_line = first.line;
+    let (mut clock, mut values, mut read) = (Clock::default(), Values::default(), Vec::new());
+    let (first_line, mut rows_read) = (first.line, 0);
     values.line = first_line;
     while let Some(row) = rows.next() {
         let is_last = rows.peek().is_none();
         columns
             .check_width(&row, columns.wrapped && is_last)
             .map_err(LineFault::on(row.line))?;
-        let (time_s, read) = columns.values(&row).map_err(|wrong| {
-            let is_of_table = |row: &Row<'_>| columns.values(row).is_ok();
+        let time_s = columns.read(&row, &mut read).map_err(|wrong| {
+            let is_of_table = |row: &Row<'_>| columns.read(row, &mut Vec::new()).is_ok();
             row.fault(wrong + &hint(&row, Rows::new(text, layout.decimal), &values, is_of_table))
         })?;
         columns.check_count(&row).map_err(LineFault::on(row.line))?;
-        for value in read {
+        rows_read += 1;
+        for value in read.drain(..) {
             values.push(row.line, value)?;
         }
         if columns.time.is_some() {
@@ -93,7 +99,7 @@ fn parse_table(
         }
         Times::Column(_) => clock.samples(values)?,
     };
-    let blank = blank_line(whole, [first_line, last_line], samples.len());
+    let blank = blank_line(whole, [first_line, last_line], rows_read);
     let contents = Contents {
         columns: columns.described(),
         states_unit,
@@ -105,6 +111,9 @@ fn parse_table(
 /// Returns a warning about blank lines between the first and the last row of a table, as a phrase that follows the name of the file; `None` if a
 /// blank line follows every row.
 fn blank_line(text: &str, [first, last]: [usize; 2], rows: usize) -> Option<String> {
+    if last - first < rows {
+        return None;
+    }
     let lines = text.lines().zip(1..).take(last).skip(first);
     let mut blank = lines.filter(|(line, _)| line.trim().is_empty());
     let (_, line) = blank.next()?;
@@ -130,9 +139,9 @@ fn decimal_commas(text: &str, decimal: Decimal) -> Option<Row<'_>> {
     let first = rows
         .find(|row| row.count() > 1 || !row.has_no_number(decimal))
         .filter(|_| has_commas)?;
-    let are_decimal = |row: &Row<'_>| row.text.split_whitespace().all(is_decimal);
+    let are_decimal = |row: &Row<'_>| row.text().split_whitespace().all(is_decimal);
     let are_all = are_decimal(&first) && rows.all(|row| are_decimal(&row));
-    Some(first).filter(|first| are_all && first.text.contains(','))
+    Some(first).filter(|first| are_all && first.text().contains(','))
 }
 
 /// Returns the error that a table has no rows.
@@ -145,7 +154,7 @@ fn no_samples(text: &str, last_line: usize) -> LineFault {
 /// Returns the text of the table. The lines before it and comments by `%` are blank, so that the others keep their line numbers; the text ends
 /// before the end marker.
 fn table_of<'t>(text: &'t str, layout: &Layout) -> Parsed<Cow<'t, str>> {
-    let (skipped, count) = (layout.skip_rows, text.lines().count());
+    let skipped = layout.skip_rows;
     // A column may be named by its unit, `%g`.
     let is_comment =
         |line: &str| line.trim_start().starts_with('%') && !line.trim().eq_ignore_ascii_case("%g");
@@ -158,16 +167,18 @@ fn table_of<'t>(text: &'t str, layout: &Layout) -> Parsed<Cow<'t, str>> {
         let end = lines.find(|(_, line)| ends(line)).map(|(index, _)| index);
         end.ok_or_else(|| {
             let marker = excerpt(marker);
-            LineFault::on(count.max(1))(format!(
+            LineFault::on(text.lines().count().max(1))(format!(
                 "no line of words begins with `{marker}` up to here, the `end_marker` of the table"
             ))
         })
     });
-    let end = end.transpose()?.unwrap_or(count);
-    if (skipped, end) == (0, count) && !text.lines().any(is_comment) {
+    let end = end.transpose()?;
+    let has_comment = || text.contains('%') && text.lines().any(is_comment);
+    if skipped == 0 && end.is_none() && !has_comment() {
         return Ok(Cow::Borrowed(text));
     }
-    let lines = text.split_inclusive('\n').take(end).enumerate();
+    let lines = text.split_inclusive('\n').enumerate();
+    let lines = lines.take(end.unwrap_or(usize::MAX));
     let lines = lines.map(|(index, line)| match index < skipped || is_comment(line) {
         true => "\n",
         false => line,
@@ -207,14 +218,14 @@ impl<'a> Columns<'a> {
             acceleration: 0,
             wrapped: layout.wrapped && time.is_none() && layout.acceleration_column.is_none(),
             names: Vec::new(),
-            title: names.map_or("", |row| row.text),
-            first: (first.text, first.line),
+            title: names.map_or("", |row| row.text()),
+            first: (first.text(), first.line),
             width: first.width(),
         };
         if let Some(row) = names.filter(|row| columns.fits(row)) {
             columns.names = row.cells().collect();
         } else if let Some(row) = names.filter(|row| !row.by_blanks && row.count() > 1) {
-            let (count, text) = (first.count(), excerpt(row.text));
+            let (count, text) = (first.count(), excerpt(row.text()));
             let wrong = format!(
                 "the names `{text}` are not those of {count} columns: correct them or the row below"
             );
@@ -327,24 +338,26 @@ impl<'a> Columns<'a> {
         format!(" from {samples}{}", times.unwrap_or_default())
     }
 
-    /// Returns time, or zero without a column of times, and the samples of a row.
-    fn values(&self, row: &Row<'_>) -> Result<(f64, Vec<f64>), String> {
+    /// Adds the samples of a row to `samples`. Returns its time, or zero without a column of times.
+    fn read(&self, row: &Row<'_>, samples: &mut Vec<f64>) -> Result<f64, String> {
         let number = |index: usize| match row.cells().nth(index) {
             Some("") => Err(format!(
                 "column {} of `{}` is empty",
                 index + 1,
-                excerpt(row.text)
+                excerpt(row.text())
             )),
             Some(cell) => self.layout.decimal.number(cell),
             None => Err(self.no_column(index, row)),
         };
         if self.wrapped {
-            let cells = row.cells().take(row.count());
-            let samples = cells.map(|cell| in_range(self.layout.decimal.number(cell)?));
-            return Ok((0.0, samples.collect::<Result<_, _>>()?));
+            for cell in row.cells().take(row.count()) {
+                samples.push(in_range(self.layout.decimal.number(cell)?)?);
+            }
+            return Ok(0.0);
         }
         let time_s = self.time.map_or(Ok(0.0), number)?;
-        Ok((time_s, vec![in_range(number(self.acceleration)?)?]))
+        samples.push(in_range(number(self.acceleration)?)?);
+        Ok(time_s)
     }
 
     fn fits(&self, row: &Row<'_>) -> bool {
@@ -356,7 +369,7 @@ impl<'a> Columns<'a> {
     fn check_width(&self, row: &Row<'_>, may_end: bool) -> Result<(), String> {
         let (count, [least, most], (first, line)) = (row.count(), self.width, self.first);
         ensure(self.fits(row) || may_end && count <= most, || {
-            let [text, first] = [row.text, first].map(excerpt);
+            let [text, first] = [row.text(), first].map(excerpt);
             format!(
                 "`{text}` has {count} cells, but `{first}` on line {line} has {least}: complete the row, give its first word as `end_marker` if the \
                  table ends above, or `skip_rows = {line}` if it begins below"
@@ -371,7 +384,7 @@ impl<'a> Columns<'a> {
         let count = row.count();
         ensure(is_chosen || is_one(), || {
             let is_named = !self.names.is_empty();
-            let text = excerpt(if is_named { self.title } else { row.text });
+            let text = excerpt(if is_named { self.title } else { row.text() });
             let wrapped = match self.time {
                 _ if is_named => "",
                 None => ", or `wrapped = true`, if a row holds samples one after another",
@@ -409,7 +422,7 @@ impl<'a> Columns<'a> {
             true => "; if the file has accelerations only, give `dt_s`",
             false => "",
         };
-        let (place, text) = (index + 1, excerpt(row.text));
+        let (place, text) = (index + 1, excerpt(row.text()));
         format!("there is no column {place} in `{text}`{hint}")
     }
 }
@@ -417,15 +430,23 @@ impl<'a> Columns<'a> {
 impl Decimal {
     /// Parses the number in a cell.
     fn number(self, cell: &str) -> Result<f64, String> {
-        let commas = cell.matches(',').count();
+        let with_point = || {
+            let is_one = cell.matches(',').count() == 1;
+            is_one
+                .then(|| number(&cell.replace(',', ".")).ok())
+                .flatten()
+        };
         match self {
-            Self::Comma if commas == 1 && !cell.contains('.') => number(&cell.replace(',', "."))
-                .map_err(|_| format!("`{}` is not a finite number", excerpt(cell))),
-            Self::Point if commas == 1 && number(&cell.replace(',', ".")).is_ok() => Err(format!(
-                "`{}` is not a finite number; if the comma is its decimal mark, give `decimal = \"comma\"`",
-                excerpt(cell)
-            )),
-            _ => number(cell),
+            Self::Comma if cell.contains(',') && !cell.contains('.') => {
+                with_point().ok_or_else(|| format!("`{}` is not a finite number", excerpt(cell)))
+            }
+            Self::Comma => number(cell),
+            Self::Point => number(cell).map_err(|wrong| match with_point() {
+                Some(_) => {
+                    format!("{wrong}; if the comma is its decimal mark, give `decimal = \"comma\"`")
+                }
+                None => wrong,
+            }),
         }
     }
 }
@@ -464,7 +485,7 @@ pub(crate) fn numbers<const N: usize>(
         let values = values.collect::<Result<Vec<_>, String>>();
         let values = <[f64; N]>::try_from(values.map_err(LineFault::on(row.line))?);
         let values = values.map_err(|values| {
-            let (text, count) = (excerpt(row.text), values.len());
+            let (text, count) = (excerpt(row.text()), values.len());
             row.fault(format!("`{text}` has {count} cells, not {N}"))
         })?;
         let many = || row.fault(format!("more than {MAX_SAMPLES} rows"));
@@ -484,8 +505,8 @@ struct Rows<'a> {
 struct Row<'a> {
     /// Line on which the row ends, from 1.
     line: usize,
-    /// Text of that line.
-    text: &'a str,
+    /// The table up to the end of that line.
+    read: &'a str,
     by_blanks: bool,
     record: StringRecord,
     /// Places of the cells in the text of the record. Every check of a row asks for them, so they are found once.
@@ -494,9 +515,8 @@ struct Row<'a> {
 
 impl<'a> Rows<'a> {
     fn new(text: &'a str, decimal: Decimal) -> Self {
-        let is_row = |line: &&str| !line.trim().is_empty() && !line.trim().starts_with('#');
         // The first row may contain names with blanks and commas.
-        let mut rows = text.lines().filter(is_row);
+        let mut rows = text.lines().filter(|line| is_row(line));
         let first = rows.next().unwrap_or_default();
         let second = rows.next().unwrap_or(first);
         // Delimiters inside quotation marks do not separate cells.
@@ -534,19 +554,31 @@ impl<'a> Iterator for Rows<'a> {
     type Item = Row<'a>;
 
     fn next(&mut self) -> Option<Row<'a>> {
-        let mut record = StringRecord::new();
+        let mut record = StringRecord::with_capacity(32, 4);
         // Rows of a text in memory may have any number of cells, so reading cannot fail.
         while self.reader.read_record(&mut record).unwrap_or(false) {
             let end = self.reader.position();
             let [line, end] = [end.line() - 1, end.byte()].map(|at| at as usize);
             let read = &self.text[..end.min(self.text.len())];
-            let text = read.lines().next_back().unwrap_or_default().trim();
-            if !text.is_empty() && !text.starts_with('#') {
-                return Some(Row::new(line, text, self.delimiter == b' ', record));
+            let begins = record.as_slice().trim_start();
+            let is_certain = !begins.is_empty() && !begins.starts_with('#');
+            if is_certain || is_row(last_line(read)) {
+                return Some(Row::new(line, read, self.delimiter == b' ', record));
             }
         }
         None
     }
+}
+
+/// Returns true for a line that is neither blank nor a comment.
+fn is_row(line: &str) -> bool {
+    let line = line.trim_start();
+    !line.is_empty() && !line.starts_with('#')
+}
+
+/// Returns the last line of a text, without surrounding blanks.
+fn last_line(text: &str) -> &str {
+    text.lines().next_back().unwrap_or_default().trim()
 }
 
 /// Returns a hint for the error of a row: in the first one, the row with which the table begins; in a row of words below the table, how to skip it;
@@ -560,12 +592,12 @@ fn hint(
     const BETWEEN: [char; 3] = [' ', '\t', ';'];
     let is_number = |word: &str| number(word).is_ok();
     if !before.values.is_empty() {
-        let has_number = wrong.text.split(BETWEEN).any(is_number);
+        let has_number = wrong.text().split(BETWEEN).any(is_number);
         let remedy = "; begin the line with `#` to skip it, or give its first word as `end_marker` if the table ends before it";
         return remedy.repeat((!has_number).into());
     }
     let is_of_numbers = |row: &Row<'_>| {
-        let mut words = row.text.split(BETWEEN).filter(|word| !word.is_empty());
+        let mut words = row.text().split(BETWEEN).filter(|word| !word.is_empty());
         words.all(is_number)
     };
     // If the first row has numbers as well, numbers alone do not begin the table.
@@ -592,7 +624,7 @@ fn touching(cell: &str, by_blanks: bool) -> impl Iterator<Item = &str> {
 impl<'a> Row<'a> {
     /// Finds the cells of a record, without surrounding blanks. A quotation mark after a blank is not a quotation for the CSV reader, so it is
     /// removed here.
-    fn new(line: usize, text: &'a str, by_blanks: bool, record: StringRecord) -> Self {
+    fn new(line: usize, read: &'a str, by_blanks: bool, record: StringRecord) -> Self {
         let whole = record.as_slice();
         let mut cells = Vec::with_capacity(record.len());
         for cell in &record {
@@ -609,11 +641,16 @@ impl<'a> Row<'a> {
         }
         Self {
             line,
-            text,
+            read,
             by_blanks,
             record,
             cells,
         }
+    }
+
+    /// Returns the line on which the row ends.
+    fn text(&self) -> &'a str {
+        last_line(self.read)
     }
 
     fn cells(&self) -> impl DoubleEndedIterator<Item = &str> + ExactSizeIterator {

@@ -137,12 +137,7 @@ impl Values {
     /// Adds a sample of a line.
     pub(crate) fn push(&mut self, line: usize, value: f64) -> Parsed<()> {
         self.line = line;
-        let wrong = || {
-            self.fault(format!(
-                "more than {MAX_SAMPLES} samples, too many for a record"
-            ))
-        };
-        ensure(self.values.len() < MAX_SAMPLES, wrong)?;
+        ensure(self.values.len() < MAX_SAMPLES, || too_many(line))?;
         self.values.push(value);
         Ok(())
     }
@@ -185,6 +180,13 @@ impl Values {
         })?;
         Ok(times_s.zip(self.values).collect())
     }
+}
+
+/// Returns the fault of a record with too many samples, on the line of the first one beyond the limit.
+pub(crate) fn too_many(line: usize) -> LineFault {
+    LineFault::on(line)(format!(
+        "more than {MAX_SAMPLES} samples, too many for a record"
+    ))
 }
 
 /// Returns the remedy for more samples than a line of the header announces; empty for fewer.
@@ -378,7 +380,10 @@ pub(crate) fn number(given: &str) -> Result<f64, String> {
     // The standard parser also accepts "inf" and "nan".
     let numeric = |c: char| c.is_ascii_digit() || "+-.eEdD".contains(c);
     let word = Some(given).filter(|word| word.len() <= 60 && word.chars().all(numeric));
-    let value = word.and_then(|word| word.replace(['d', 'D'], "e").parse::<f64>().ok());
+    let value = word.and_then(|word| match word.contains(['d', 'D']) {
+        true => word.replace(['d', 'D'], "e").parse::<f64>().ok(),
+        false => word.parse().ok(),
+    });
     let value = value.filter(|value| value.is_finite());
     value.ok_or_else(|| format!("`{}` is not a finite number", excerpt(given)))
 }
