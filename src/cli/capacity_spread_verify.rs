@@ -9,6 +9,7 @@ use nalgebra::Vector2;
 use super::execution::Execution;
 use super::figure::FigureOption;
 use super::parsers::{number, point_m, side};
+use super::results::DetailsOption;
 use super::scenario_file::ScenarioFile;
 use super::study::WorkOptions;
 use super::{Failure, Format};
@@ -124,6 +125,7 @@ pub fn execution(
         work: WorkOptions::default(),
         pictures: figure.figure_format,
         format: arguments.format,
+        detail: DetailsOption::default().get(),
         has_words_apart: false,
     })
 }

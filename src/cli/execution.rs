@@ -8,8 +8,7 @@ use archrock::studies::{Options, StudyKind, Style};
 use serde_json::Value;
 
 use super::models::warn_of;
-use super::progress::is_quiet;
-use super::results::CommandResults;
+use super::results::{CommandResults, Detail};
 use super::scenario_file::{Destination, FileTasks, ScenarioTask};
 use super::study::{StudyJob, WorkOptions, has_uncertain};
 use super::{Failure, Format, print, print_all};
@@ -23,6 +22,7 @@ pub struct Execution {
     /// Format of the pictures in addition to SVG.
     pub pictures: Option<PictureFormat>,
     pub format: Format,
+    pub detail: Detail,
     /// True if standard output carries a table and nothing else.
     pub has_words_apart: bool,
 }
@@ -81,7 +81,7 @@ impl Execution {
                 }
                 let Some(found) = found else { continue };
                 // A closed pipe ends the words, not the work.
-                printed = printed.and_then(|()| self.print(&found, task));
+                printed = printed.and_then(|()| self.print(&found, task, task.again.as_deref()));
                 if matches!(self.format, Format::Json) {
                     summaries.push(found.summary(self.kind)?);
                 }
@@ -96,13 +96,18 @@ impl Execution {
     }
 
     /// Prints the results of a task in words.
-    fn print(&self, found: &CommandResults, task: &ScenarioTask) -> Result<(), Failure> {
+    fn print(
+        &self,
+        found: &CommandResults,
+        task: &ScenarioTask,
+        again: Option<&str>,
+    ) -> Result<(), Failure> {
         let title = task.scenarios[0].title.as_deref();
-        let words = || found.words(self.kind, title, is_quiet());
+        let words = || found.words(self.kind, title, self.detail, again);
         match self.format {
             Format::Json => Ok(()),
             Format::Text if !self.has_words_apart => print(&words()),
-            Format::Text if is_quiet() => Ok(()),
+            Format::Text if self.detail == Detail::Quiet => Ok(()),
             Format::Text => {
                 // When standard error fails there is nowhere to report it.
                 let _ = io::stderr().write_all(shown_lines(&words()).as_bytes());

@@ -31,14 +31,20 @@ pub struct ModelsOption {
 }
 
 impl ModelsOption {
-    /// Reads the scenario once for each chosen model; without a choice, once with the model of its tables.
-    pub fn read(&self, input: &Input<'_>) -> Result<Vec<Scenario>, Failure> {
+    /// Returns the chosen models, each once; empty without a choice.
+    pub fn chosen(&self) -> Vec<&'static ModelKind> {
         let mut models: Vec<&ModelKind> = Vec::new();
         for model in self.hinges.iter().flatten() {
             if !models.contains(model) {
                 models.push(model);
             }
         }
+        models
+    }
+
+    /// Reads the scenario once for each chosen model; without a choice, once with the model of its tables.
+    pub fn read(&self, input: &Input<'_>) -> Result<Vec<Scenario>, Failure> {
+        let models = self.chosen();
         if models.is_empty() {
             return Ok(vec![input.read(None)?]);
         }

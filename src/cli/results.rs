@@ -7,6 +7,37 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::Failure;
+use super::progress::is_quiet;
+
+/// How much of a report is printed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Detail {
+    /// The answer with its conditions and warnings.
+    Quiet,
+    /// The answer, the main numbers, the next command and the page.
+    Answer,
+    /// All numbers.
+    All,
+}
+
+/// The option to print all numbers.
+#[derive(clap::Args, Clone, Copy, Default)]
+pub struct DetailsOption {
+    /// Print all numbers, as on the page and in the JSON.
+    #[arg(long, conflicts_with = "quiet")]
+    details: bool,
+}
+
+impl DetailsOption {
+    /// Returns how much is printed, with `--quiet` taken into account.
+    pub fn get(self) -> Detail {
+        match is_quiet() {
+            true => Detail::Quiet,
+            false if self.details => Detail::All,
+            false => Detail::Answer,
+        }
+    }
+}
 
 /// The results of a study of scenarios that differ only in their models of motion.
 pub struct CommandResults {
@@ -26,43 +57,70 @@ pub struct ModelResults {
     pub compared: Option<Results>,
     /// The results on the scenario itself.
     pub own: Results,
-    /// Their folder and files in words; `None` without files, or if their words name them.
-    pub place: Option<String>,
+    /// Their place; `None` without files.
+    pub place: Option<Place>,
 }
 
 /// The results on the samples of a model.
 pub struct SampleResults {
     pub model: &'static ModelKind,
     pub results: Results,
+    pub place: Place,
+}
+
+/// The place of results.
+pub struct Place {
     /// Their folder, and the names of their files, in words.
-    pub place: String,
+    pub files: String,
+    /// Their page; without one, their folder.
+    pub page: String,
+    /// True if the details name the files.
+    pub is_in_words: bool,
 }
 
 /// Heading of the report on the scenario without uncertainty, after that on its samples.
 const NOMINAL_HEADING: &str = "the scenario with its given numbers:";
 
 impl ModelResults {
-    /// Returns the report on the samples, which has the probability of overturning, and then that on the scenario itself; only the statements that
-    /// `--quiet` leaves if it is `brief`.
-    fn words(&self, is_indented: bool, brief: bool) -> String {
-        let words = |results: &Results| match brief {
-            true => results.statement.in_brief(),
-            false => results.words.clone(),
+    /// Returns the report on the samples, which has the probability of overturning, and then that on the scenario itself.
+    fn words(&self, is_indented: bool, detail: Detail, again: Option<&str>) -> String {
+        let has_numbers = detail != Detail::Quiet;
+        // A table is complete.
+        let detail = match detail {
+            Detail::Answer if !is_indented => Detail::All,
+            detail => detail,
+        };
+        let words = |results: &Results| match detail {
+            Detail::Quiet if !is_indented => results.words.clone(),
+            Detail::All => results.words.clone(),
+            _ => results.statement.answer(has_numbers),
+        };
+        let place = |place: &Place| match detail {
+            Detail::Quiet => None,
+            Detail::Answer => Some(format!("{}; all numbers: --details", place.page)),
+            Detail::All => Some(format!("results in {}", place.files)),
         };
         let indent = if is_indented { "  " } else { "" };
         let mut lines = Vec::new();
         for one in &self.samples {
             lines.extend((self.samples.len() > 1).then(|| one.model.label.to_owned()));
             lines.push(format!("  {}", words(&one.results)));
-            lines.extend((!brief).then(|| format!("  results in {}", one.place)));
+            lines.extend(place(&one.place).map(|place| format!("  {place}")));
         }
-        if let Some(compared) = self.compared.as_ref().filter(|_| !brief) {
+        if let Some(compared) = self.compared.as_ref().filter(|_| has_numbers) {
             lines.push(format!("  {}", compared.words));
         }
         lines.extend((!self.samples.is_empty()).then(|| NOMINAL_HEADING.to_owned()));
         lines.push(format!("{indent}{}", words(&self.own)));
-        let place = self.place.as_ref().filter(|_| !brief);
-        lines.extend(place.map(|place| format!("{indent}results in {place}")));
+        let next = self.own.statement.next.as_ref().zip(again);
+        let next = next.filter(|_| detail == Detail::Answer);
+        lines.extend(next.map(|(next, again)| {
+            format!("{indent}next: archrock {}", next.replace("FILE", again))
+        }));
+        let own = self.place.as_ref();
+        // The details of a run name its files.
+        let own = own.filter(|place| detail != Detail::All || !place.is_in_words);
+        lines.extend(own.and_then(place).map(|place| format!("{indent}{place}")));
         lines.join("\n")
     }
 
@@ -98,7 +156,7 @@ struct Summary<'f> {
 
 impl CommandResults {
     /// Makes the results of a study of one model without samples, with their folder in words.
-    pub fn alone(model: &'static ModelKind, own: Results, place: String) -> Self {
+    pub fn alone(model: &'static ModelKind, own: Results, place: Place) -> Self {
         let of_model = ModelResults {
             model,
             samples: Vec::new(),
@@ -112,18 +170,24 @@ impl CommandResults {
         }
     }
 
-    /// Returns the results in words; only the statements that `--quiet` leaves if they are `brief`.
-    pub fn words(&self, kind: StudyKind, title: Option<&str>, brief: bool) -> String {
+    /// Returns the results in words, with the title of the scenario. `again` is the scenario file with its options, for the next command.
+    pub fn words(
+        &self,
+        kind: StudyKind,
+        title: Option<&str>,
+        detail: Detail,
+        again: Option<&str>,
+    ) -> String {
         let title = title.filter(|_| kind.has_title);
         let mut text = title.map_or(String::new(), |title| format!("{title}\n"));
-        let input = self.of_models.first().filter(|_| !brief);
+        let input = self.of_models.first().filter(|_| detail != Detail::Quiet);
         text.extend(input.map(|one| one.own.statement.input.as_str()));
         for one in &self.of_models {
             let label = (self.of_models.len() > 1).then_some(one.model.label);
             text.extend(label.map(|label| format!("{label}\n")));
-            text += &format!("{}\n", one.words(kind.has_title, brief));
+            text += &format!("{}\n", one.words(kind.has_title, detail, again));
         }
-        if let Some(compared) = self.compared.as_ref().filter(|_| !brief) {
+        if let Some(compared) = self.compared.as_ref().filter(|_| detail != Detail::Quiet) {
             text += &format!("{}\n", compared.words);
         }
         text.extend(self.quote().map(|quote| format!("{quote}\n")));
@@ -151,8 +215,20 @@ impl CommandResults {
     }
 }
 
+/// Returns the place of the results of a study in a folder.
+pub fn describe(folder: &Folder, kind: StudyKind, results: &Results) -> Place {
+    let mut names = kind.files.iter().filter(|name| name.ends_with(".html"));
+    let page = names.find(|name| kind.streams_tables || results.names().contains(name));
+    let page = page.map_or_else(|| folder.path().to_owned(), |page| folder.path().join(page));
+    Place {
+        files: in_words(folder, results),
+        page: page.display().to_string(),
+        is_in_words: kind.streams_tables,
+    }
+}
+
 /// Returns the folder with its result files, in words.
-pub fn describe(folder: &Folder, results: &Results) -> String {
+fn in_words(folder: &Folder, results: &Results) -> String {
     let also = match folder.pictures {
         None | Some(PictureFormat::Svg) => "",
         Some(PictureFormat::Pdf) => ", pictures also as PDF",

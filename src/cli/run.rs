@@ -12,6 +12,7 @@ use super::execution::Execution;
 use super::figure::FigureOption;
 use super::models::ModelsOption;
 use super::parsers::{number, point_m};
+use super::results::DetailsOption;
 use super::scenario_file::{
     Destination, DirectionOption, FileTasks, SetOption, SuiteOption, check_distinct,
 };
@@ -39,6 +40,8 @@ pub struct Arguments {
     /// written with --out only.
     #[arg(long, value_enum, default_value_t, conflicts_with = "rotations")]
     format: Format,
+    #[command(flatten)]
+    details: DetailsOption,
     /// Add dimensionless columns to the rotations: p_t (time), acceleration_over_incipient and
     /// rotation_over_critical. For four links and columns only.
     #[arg(long)]
@@ -111,6 +114,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         work: arguments.work,
         pictures: arguments.figure.figure_format,
         format: arguments.format,
+        detail: arguments.details.get(),
         has_words_apart: arguments.to_stdout(),
     };
     execution.execute(files)
@@ -159,6 +163,7 @@ impl Arguments {
     /// Reads the scenarios of a file.
     fn read(&self, path: &Path, options: &RunOptions) -> Result<FileTasks, Failure> {
         let input = self.set.open(path)?.in_direction(self.direction);
+        let input = input.choosing(&self.models);
         let models = self.models.read(&input)?;
         if models.len() > 1 && self.to_stdout() {
             return Err(input.input_error("--rotations - takes one model; choose with --hinges"));

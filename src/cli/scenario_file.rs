@@ -9,6 +9,7 @@ use archrock::output::{Folder, Origin, PictureFormat};
 use archrock::scenario::{Assignment, ModelKind, ReadOptions, Scenario, Source};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
+use super::models::ModelsOption;
 use super::progress::with_notice;
 use super::{Failure, check_no_errors};
 
@@ -56,6 +57,7 @@ impl SetOption {
             source,
             set: self.set.clone(),
             no_uncertain: self.no_uncertain,
+            models: Vec::new(),
         })
     }
 }
@@ -100,6 +102,8 @@ pub struct ScenarioTask {
     pub scenarios: Vec<Scenario>,
     /// Subfolder for the results of a record; `None` without `--suite`.
     subfolder: Option<PathBuf>,
+    /// The scenario file with the options that change its scenario, for another command; `None` if no command reads it so.
+    pub again: Option<String>,
 }
 
 impl ScenarioTask {
@@ -109,6 +113,7 @@ impl ScenarioTask {
             name: input.path.display().to_string(),
             scenarios,
             subfolder: None,
+            again: input.again(),
         }
     }
 
@@ -155,6 +160,7 @@ impl SuiteOption {
                     name: format!("{file}, {record}"),
                     scenarios: vec![scenario],
                     subfolder: Path::new(&record).file_name().map(PathBuf::from),
+                    again: None,
                 });
             }
         }
@@ -182,9 +188,16 @@ pub struct Input<'a> {
     source: Source,
     set: Vec<Assignment>,
     no_uncertain: bool,
+    models: Vec<&'static ModelKind>,
 }
 
 impl Input<'_> {
+    /// Returns the scenario with the models of the option.
+    pub fn choosing(self, option: &ModelsOption) -> Self {
+        let models = option.chosen();
+        Self { models, ..self }
+    }
+
     /// Returns the scenario in the directions of the option.
     pub fn in_direction(mut self, option: DirectionOption) -> Self {
         self.set.extend(option.assignment());
@@ -250,6 +263,23 @@ impl Input<'_> {
         }
     }
 
+    /// Returns the scenario file with the options that change its scenario, as a shell reads them; `None` for standard input, and for several models.
+    fn again(&self) -> Option<String> {
+        let hinges = match &self.models[..] {
+            [] => None,
+            [one] => Some(format!("--hinges {}", one.option)),
+            _ => return None,
+        };
+        let path = (!is_stdin(self.path)).then(|| quoted(&self.path.display().to_string()))?;
+        let set = self
+            .set
+            .iter()
+            .map(|one| format!("--set {}", quoted(one.given())));
+        let more = self.no_uncertain.then(|| "--no-uncertain".to_owned());
+        let words = [path].into_iter().chain(hinges).chain(set).chain(more);
+        Some(words.collect::<Vec<_>>().join(" "))
+    }
+
     /// Returns the name of the scenario file.
     pub fn name(&self) -> String {
         self.source.name().to_owned()
@@ -271,6 +301,15 @@ impl Input<'_> {
             path: out.map_or_else(default, Path::to_owned),
             scenario_file,
         }
+    }
+}
+
+/// Returns a word of a command as a shell reads it.
+fn quoted(word: &str) -> String {
+    let is_bare = |c: char| c.is_ascii_alphanumeric() || "_-./=:,+@%".contains(c);
+    match !word.is_empty() && word.chars().all(is_bare) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', r"'\''")),
     }
 }
 

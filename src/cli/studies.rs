@@ -11,8 +11,7 @@ use archrock::studies::{MAP, Options, SUITE, StudyKind, Style, UNCERTAIN_MAP};
 use clap::ValueEnum;
 
 use super::figure::FigureOption;
-use super::progress::is_quiet;
-use super::results::{CommandResults, describe};
+use super::results::{CommandResults, DetailsOption, describe};
 use super::scenario_file::Destination;
 use super::study::publish;
 use super::study_options::StudyArguments;
@@ -37,6 +36,8 @@ pub struct MergeArguments {
     /// Format of the printed summary; JSON goes to standard output.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
+    #[command(flatten)]
+    details: DetailsOption,
     #[command(flatten)]
     map: MapOption,
     #[command(flatten)]
@@ -157,10 +158,12 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     folder.check(kind.files)?;
     results.write(&folder)?;
     publish(&folder)?;
-    let place = describe(&folder, &results);
+    let place = describe(&folder, kind, &results);
     let found = CommandResults::alone(merged.model, results, place);
     match arguments.format {
         Format::Json => print(&pretty(&found.summary(kind)?)),
-        Format::Text => print(&found.words(kind, merged.title.as_deref(), is_quiet())),
+        Format::Text => {
+            print(&found.words(kind, merged.title.as_deref(), arguments.details.get(), None))
+        }
     }
 }

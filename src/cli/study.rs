@@ -299,7 +299,7 @@ impl StudyJob {
             if let Some(results) =
                 self.compute(*samples, slice::from_ref(scenario), Some(&folder), &[])?
             {
-                models.push((model, describe(&folder, &results)));
+                models.push((model, describe(&folder, *samples, &results)));
                 of_samples.push(results);
             }
         }
@@ -324,13 +324,11 @@ impl StudyJob {
         let models: Vec<_> = compared
             .map(|(scenario, one)| (scenario, &one.results))
             .collect();
-        // The words of a run name its files.
-        let folder_of_own = folder.filter(|_| !kind.streams_tables);
         Ok(Some(ModelResults {
             model: scenarios[0].motion.kind,
             compared: self.compare(kind, &models, folder)?,
             samples: of_samples,
-            place: folder_of_own.map(|folder| describe(folder, &own)),
+            place: folder.map(|folder| describe(folder, kind, &own)),
             own,
         }))
     }

@@ -8,6 +8,7 @@ use archrock::studies::{Options, StudyKind, Style};
 use super::execution::Execution;
 use super::figure::FigureOption;
 use super::models::ModelsOption;
+use super::results::DetailsOption;
 use super::scenario_file::{DirectionOption, FileTasks, Input, ScenarioFile};
 use super::study::WorkOptions;
 use super::{Failure, Format};
@@ -34,12 +35,15 @@ pub struct StudyArguments {
     /// Format of the printed summary; JSON goes to standard output.
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
+    #[command(flatten)]
+    details: DetailsOption,
 }
 
 impl StudyArguments {
     /// Reads the text of the scenario.
     pub fn open(&self) -> Result<Input<'_>, Failure> {
-        Ok(self.scenario.open()?.in_direction(self.direction))
+        let input = self.scenario.open()?.in_direction(self.direction);
+        Ok(input.choosing(&self.models))
     }
 
     /// Returns the task of a scenario file, with the folder for its results.
@@ -58,6 +62,7 @@ impl StudyArguments {
             work: self.work,
             pictures: self.figure.figure_format,
             format: self.format,
+            detail: self.details.get(),
             has_words_apart: false,
         }
     }

@@ -23,6 +23,11 @@ pub struct Assignment {
 }
 
 impl Assignment {
+    /// The assignment as the user gives it.
+    pub fn given(&self) -> &str {
+        &self.given
+    }
+
     /// Key in the text of the user.
     pub fn key(&self) -> &str {
         self.given.split('=').next().unwrap_or_default().trim()

@@ -13,6 +13,7 @@ use super::ensemble::uncertain_threshold::FirstEdges;
 use super::limit;
 use super::map::OverturningMap;
 use super::part::{self, PartFile};
+use super::quotable::free_hinges_instead;
 use super::run::{self, RunOptions, Sinks};
 use super::spread::{self, SpringingDirection};
 use super::suite::{Heading, RecordSuite};
@@ -356,12 +357,24 @@ impl StudyKind {
         sinks: Sinks<'_>,
     ) -> Result<Computation, StudyError> {
         let (scenario, figure) = (&scenarios[0], style.figure);
-        let results = match self.way {
-            Way::Models(results) => results(scenarios, options, figure, work, sinks),
-            Way::Whole(results) => results(scenario, options, figure),
-            Way::Cases(_) => return self.study(scenario, options)?.compute(style, work),
-        };
-        Ok(Computation::Complete(Box::new(results?), None))
+        let complete = |results| Computation::Complete(Box::new(results), None);
+        let mut done = match self.way {
+            Way::Models(results) => results(scenarios, options, figure, work, sinks).map(complete),
+            Way::Whole(results) => results(scenario, options, figure).map(complete),
+            Way::Cases(_) => self.study(scenario, options)?.compute(style, work),
+        }?;
+        if let (Computation::Complete(results, _), [_]) = (&mut done, scenarios) {
+            let next = &mut results.statement.next;
+            *next = next.take().or_else(|| self.with_free_hinges(scenario));
+        }
+        Ok(done)
+    }
+
+    /// The command of this study with free hinges, which answer where four links are a guide; `None` for other models and for a run, which has its own.
+    fn with_free_hinges(self, scenario: &Scenario) -> Option<String> {
+        let is_command = [MAP, SUITE, THRESHOLD].contains(&self);
+        let options = free_hinges_instead(scenario).filter(|_| is_command)?;
+        Some(format!("{} FILE {options}", self.name))
     }
 
     /// Makes the results of rows given as JSON, in the order of the cases.

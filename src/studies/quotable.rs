@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::argument::plain;
 use crate::dynamics::{Direction, Directions, MODEL_LIMIT};
-use crate::scenario::{FOUR_LINKS, FREE_HINGES, ModelKind, Scenario};
+use crate::scenario::{FOUR_LINKS, FREE_HINGES, ModelKind, Scenario, Structure};
 
 /// Smallest and largest coefficient of friction of stone on stone. An answer has no condition up to the smallest one.
 pub(super) const STONE_FRICTION: [f64; 2] = [0.5, 0.8];
@@ -35,6 +35,22 @@ const SLIPS_ABOVE: f64 = 0.6;
 /// `scenarios/recipes/map-for-print.toml` 6 of 620 overturn with free hinges below it, and 187 of 244 from there on.
 pub(super) const QUOTED_PEAK: f64 = 0.4;
 
+/// True for an arch without voussoirs, whose hinges may lie anywhere.
+fn lacks_joints(structure: &Structure) -> bool {
+    let arch = structure.circular_arch();
+    arch.is_some_and(|arch| arch.voussoirs.is_none())
+}
+
+/// Returns the options of a command that computes an arch of four links with free hinges instead; `None` for other structures and models.
+pub(super) fn free_hinges_instead(scenario: &Scenario) -> Option<&'static str> {
+    let (structure, motion) = (&scenario.structure, &scenario.motion);
+    let is_arch = motion.kind == &FOUR_LINKS && structure.has_horizontal_thrust();
+    is_arch.then(|| match lacks_joints(structure) {
+        true => "--hinges free --set arch.voussoirs=36",
+        false => "--hinges free",
+    })
+}
+
 /// The part of a scenario that words about its friction need.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct SlipWords {
@@ -48,9 +64,7 @@ impl SlipWords {
     /// Words for a scenario.
     pub(super) fn of(scenario: &Scenario) -> Self {
         let (structure, motion) = (&scenario.structure, &scenario.motion);
-        let arch = structure.circular_arch();
-        let is_continuous = arch.is_some_and(|arch| arch.voussoirs.is_none());
-        let has_free_hinges = structure.wall_behind().is_none() && !is_continuous;
+        let has_free_hinges = structure.wall_behind().is_none() && !lacks_joints(structure);
         let is_free = motion.kind == &FREE_HINGES && !motion.ignores_elastic_joints;
         let hinges = if is_free { "" } else { " --hinges free" };
         let options = format!("{hinges} --set free_hinges.friction_coefficient={SLIPS_ABOVE}");
@@ -94,16 +108,14 @@ impl FrictionCondition {
         may_slip(self.coefficient)
     }
 
-    /// Words that follow an answer: `if its joints have a friction coefficient of 0.54`; empty if joints may slip.
-    fn clause(&self) -> String {
-        match self.may_slip() {
-            true => String::new(),
-            false => format!(
-                " if {} a friction coefficient of {}",
-                self.surfaces,
-                format_friction(self.coefficient)
-            ),
-        }
+    /// Condition of an answer: `if its joints have a friction coefficient of 0.54`; `None` if joints may slip.
+    fn clause(&self) -> Option<String> {
+        let coefficient = format_friction(self.coefficient);
+        let clause = format!(
+            "if {} a friction coefficient of {coefficient}",
+            self.surfaces
+        );
+        (!self.may_slip()).then_some(clause)
     }
 
     /// Condition in words; `need` is a verb with its subject.
@@ -206,6 +218,8 @@ pub struct ModelAnswer {
     friction: Option<FrictionCondition>,
     /// The assumed restitution, in words; `None` unless the model is one rigid block.
     restitution: Option<String>,
+    /// The certainty of a single history, and of its numbers, in words.
+    certainty: Vec<String>,
 }
 
 /// Restitution that one rigid block assumes, in words that follow its name; `None` for other models.
@@ -241,8 +255,8 @@ pub(super) fn restitution_in_words(scenario: &Scenario) -> Option<String> {
                 1.0 => "Housner's".to_owned(),
                 factor => format!("{} of Housner's", plain(factor)),
             };
-            let measured = format!("measured {low} to {high} of it");
-            format!("restitution {energies:.3} ({own}; {measured}){bounces}")
+            let measured = format!("measured {low} to {high} times that");
+            format!("restitution {energies:.3} ({own}, {measured}){bounces}")
         }
     })
 }
@@ -266,6 +280,7 @@ impl ModelAnswer {
             answer: answer.and_then(|answer| outside.flatten().map_or(Ok(answer), Err)),
             friction: None,
             restitution: None,
+            certainty: Vec::new(),
         }
     }
 
@@ -305,6 +320,12 @@ impl ModelAnswer {
         Self { answer, ..self }
     }
 
+    /// Answer with its certainty, in words.
+    pub fn with_certainty(self, certainty: impl IntoIterator<Item = String>) -> Self {
+        let certainty = certainty.into_iter().collect();
+        Self { certainty, ..self }
+    }
+
     /// Answer with the friction on which it depends.
     pub fn with_friction(self, friction: Option<FrictionCondition>) -> Self {
         Self { friction, ..self }
@@ -340,30 +361,36 @@ fn outside_four_links(excess_ratio: Option<f64>) -> Option<String> {
 }
 
 /// Begin of a quote without an answer.
-pub(super) const NO_ANSWER: &str = "to quote: no answer";
+pub(super) const NO_ANSWER: &str = "no answer";
 
-/// Answer that may be quoted, in words; `None` without models.
+/// Separates an answer and its conditions. The words of a study have them in lines.
+pub(super) const THOUGHT_END: &str = "; ";
+
+/// Answer that may be quoted with its conditions, in words; `None` without models.
 pub fn quote_answers(answers: &[ModelAnswer]) -> Option<String> {
     let best = answers.iter().max_by_key(|one| one.model.rank())?;
     let label = best.label;
+    let answer = match &best.answer {
+        Ok(answer) => answer,
+        Err(why) => return Some(format!("{NO_ANSWER} with {label}: {why}")),
+    };
+    let restitution = best.restitution.iter().map(|words| format!(", {words}"));
+    let restitution: String = restitution.collect();
     let more = match best.model {
-        model if model == &FREE_HINGES => "; the stiffness of joints is not considered",
-        model if model == &FOUR_LINKS && label == model.label => "; compare with free hinges",
-        _ => "",
+        model if model == &FREE_HINGES => Some("the stiffness of joints is not considered"),
+        model if model == &FOUR_LINKS && label == model.label => Some("compare with free hinges"),
+        _ => None,
     };
     let friction = best.friction.as_ref();
-    let clause = friction.map_or(String::new(), FrictionCondition::clause);
     let slip = friction.filter(|friction| friction.may_slip());
-    let slip = slip.map_or(String::new(), |slip| format!("; {slip}"));
-    let restitution: String = best
-        .restitution
-        .iter()
-        .map(|words| format!(", {words}"))
-        .collect();
-    Some(match &best.answer {
-        Ok(answer) => {
-            format!("to quote: {answer}{clause}, with {label}{restitution}{more}{slip}")
-        }
-        Err(why) => format!("{NO_ANSWER} with {label}: {why}"),
-    })
+    let conditions = [
+        friction.and_then(FrictionCondition::clause),
+        more.map(str::to_owned),
+        slip.map(FrictionCondition::to_string),
+    ];
+    let answer = format!("{answer}, with {label}{restitution}");
+    let certainty = best.certainty.iter().cloned();
+    let parts = [answer].into_iter().chain(certainty);
+    let parts: Vec<String> = parts.chain(conditions.into_iter().flatten()).collect();
+    Some(parts.join(THOUGHT_END))
 }

@@ -3,6 +3,7 @@
 use askama::Template;
 use serde::{Deserialize, Serialize};
 
+use super::quotable::{NO_ANSWER, THOUGHT_END};
 use crate::output::render;
 use crate::scenario::Unlikely;
 
@@ -17,6 +18,11 @@ pub trait Report: Serialize + Template {
     /// Returns the answer that may be quoted, or the reason why there is none; `None` if the study has no answer to quote.
     fn quote(&self) -> Option<&str> {
         None
+    }
+
+    /// Returns the main numbers, in lines; by default those of the verdict.
+    fn numbers(&self) -> Vec<String> {
+        self.verdict().lines().map(str::to_owned).collect()
     }
 
     /// Returns the warnings; none by default.
@@ -87,9 +93,25 @@ pub struct Statement {
     pub limits: Vec<String>,
     /// The answer that may be quoted, or the reason why there is none.
     pub quote: Option<String>,
+    /// The main numbers, in lines.
+    pub numbers: Vec<String>,
+    /// The command that a user needs next, with `FILE` for the scenario, without `archrock`; `None` if there is none.
+    pub next: Option<String>,
     /// True if the details are a table in words, complete without the verdict.
     pub is_table: bool,
 }
+
+/// Largest number of characters of a line with several thoughts.
+const LINE: usize = 96;
+/// Verdicts that begin an answer. Each is printed in capitals.
+const VERDICTS: [&str; 6] = [
+    "survives",
+    "overturns",
+    "never moves",
+    "vibrates",
+    NO_ANSWER,
+    "no verdict",
+];
 
 impl Statement {
     /// Makes the statements of a report.
@@ -102,6 +124,8 @@ impl Statement {
             unlikely: unlikely.to_vec(),
             limits: limits.to_vec(),
             quote: report.quote().map(str::to_owned),
+            numbers: report.numbers(),
+            next: None,
             is_table: R::IS_TABLE,
         }
     }
@@ -114,9 +138,30 @@ impl Statement {
         }
     }
 
-    /// Returns verdict, limits and answer in words, without details.
-    pub fn in_brief(&self) -> String {
-        self.lines("")
+    /// Returns the answer with its conditions and warnings, in lines; with the main numbers if `has_numbers`. A study without an answer has its
+    /// verdict in their place.
+    pub fn answer(&self, has_numbers: bool) -> String {
+        let quote = self.quote.as_deref();
+        let has_answer = quote.is_some_and(|quote| !quote.starts_with(NO_ANSWER));
+        let thoughts = |words: &str| with_capitals(in_lines(words.split(THOUGHT_END)));
+        let verdict = || self.verdict.lines().flat_map(thoughts);
+        let mut lines: Vec<String> = match has_answer {
+            true => Vec::new(),
+            false => verdict().collect(),
+        };
+        lines.extend(quote.into_iter().flat_map(thoughts));
+        // The answer and its conditions contain some of the other thoughts.
+        let said = [quote, Some(&*self.verdict).filter(|_| !has_answer)];
+        let is_said = |thought: &&str| {
+            let need = thought.strip_prefix("needs ").unwrap_or(thought);
+            said.iter().flatten().any(|said| said.contains(need))
+        };
+        let numbers = self.numbers.iter().filter(|_| has_numbers);
+        for words in self.limits.iter().chain(numbers) {
+            let new = words.split(THOUGHT_END).filter(|one| !is_said(one));
+            lines.extend(in_lines(new.collect::<Vec<_>>()));
+        }
+        lines.join("\n  ")
     }
 
     /// Returns all warnings.
@@ -144,4 +189,46 @@ impl Statement {
         let lines: String = lines.map(|line| format!("\n{line}")).collect();
         format!("{verdict}{lines}")
     }
+}
+
+/// Writes thoughts in lines: several short ones on a line, and a long one on several.
+fn in_lines<'t>(thoughts: impl IntoIterator<Item = &'t str>) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for thought in thoughts {
+        let mut words = thought.split(' ');
+        let begun = match lines.last_mut() {
+            Some(line) if length(line) + length(thought) < LINE => {
+                *line += THOUGHT_END;
+                *line += thought;
+                continue;
+            }
+            _ => words.next().unwrap_or_default(),
+        };
+        let mut line = begun.to_owned();
+        for word in words {
+            match length(&line) + length(word) < LINE {
+                true => line += &format!(" {word}"),
+                false => lines.push(std::mem::replace(&mut line, format!("  {word}"))),
+            }
+        }
+        lines.push(line);
+    }
+    lines
+}
+
+/// Writes the verdict at the beginning of an answer in capitals.
+fn with_capitals(mut lines: Vec<String>) -> Vec<String> {
+    if let Some(first) = lines.first_mut()
+        && let Some(verdict) = VERDICTS
+            .into_iter()
+            .find(|verdict| first.starts_with(verdict))
+    {
+        *first = first.replacen(verdict, &verdict.to_uppercase(), 1);
+    }
+    lines
+}
+
+/// Returns the number of characters.
+fn length(text: &str) -> usize {
+    text.chars().count()
 }

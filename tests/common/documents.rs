@@ -36,6 +36,23 @@ pub fn assert_generated(page: &str, written_by: &str, text: &str) {
     );
 }
 
+/// Asserts that a file is this text. `ARCHROCK_GOLDEN=write` writes it.
+#[track_caller]
+pub fn assert_generated_file(path: &str, text: &str) {
+    let file = repository().join(path);
+    if env::var("ARCHROCK_GOLDEN").is_ok_and(|value| value == "write") {
+        fs::write(file, text).unwrap();
+        return;
+    }
+    let known = fs::read_to_string(file).unwrap();
+    let mut lines = known.lines().zip(text.lines());
+    let first = lines.find(|(known, now)| known != now);
+    assert!(
+        known == text,
+        "{path} is not up to date, first in {first:?}: run ARCHROCK_GOLDEN=write cargo test --test all -- summaries"
+    );
+}
+
 /// The number of words outside code blocks and outside the parts that tests write.
 pub fn words(page: &str) -> usize {
     let (mut is_code, mut is_generated) = (false, false);

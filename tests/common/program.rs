@@ -18,8 +18,48 @@ pub fn command(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-pub fn archrock(folder: &Path, arguments: &[&str]) -> Output {
+/// Output of the program with exactly these arguments.
+pub fn typed(folder: &Path, arguments: &[&str]) -> Output {
     command(folder, arguments).output().unwrap()
+}
+
+/// Output of the program with these arguments, and with `--details` for a study that prints words: most tests read all numbers.
+pub fn archrock(folder: &Path, arguments: &[&str]) -> Output {
+    let has_answer = |name: &&str| ["run", "threshold", "map", "suite", "merge"].contains(name);
+    let chooses = |one: &&str| ["--quiet", "--details", "--format", "--help"].contains(one);
+    let details = arguments.first().is_some_and(|name| has_answer(name))
+        && !arguments.iter().any(|one| chooses(one));
+    let mut arguments = arguments.to_vec();
+    if details {
+        arguments.insert(1, "--details");
+    }
+    typed(folder, &arguments)
+}
+
+/// The thoughts of an answer below its title, as in `to_quote`: without line breaks and capitals.
+pub fn thoughts(answer: &str) -> String {
+    let mut joined = String::new();
+    for line in answer.lines().skip(1) {
+        let is_continued = line.starts_with("    ");
+        joined += match joined.is_empty() {
+            true => "",
+            false if is_continued => " ",
+            false => "; ",
+        };
+        joined += line.trim();
+    }
+    [
+        "SURVIVES",
+        "OVERTURNS",
+        "NEVER MOVES",
+        "VIBRATES",
+        "NO ANSWER",
+        "NO VERDICT",
+    ]
+    .into_iter()
+    .fold(joined, |joined, verdict| {
+        joined.replace(verdict, &verdict.to_lowercase())
+    })
 }
 
 /// Says that a test cannot run without a tool, or fails if ARCHROCK_REQUIRE_TOOLS is 1 (`.ci/run`): a skipped test looks like one that passes.
@@ -174,7 +214,7 @@ pub fn assert_shown_output_is_printed(page: &str, folder: &Path) -> usize {
 /// All that a command prints, which must end well.
 #[track_caller]
 fn all_printed(folder: &Path, arguments: &[&str]) -> String {
-    let output = archrock(folder, arguments);
+    let output = typed(folder, arguments);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     String::from_utf8(output.stdout.clone()).unwrap() + &stderr(&output)
 }

@@ -291,7 +291,7 @@ fn a_slender_block_has_a_verdict() {
         ];
         let output = archrock(folder.path(), &[&arguments[..], options].concat());
         let said = stdout(&output) + &stderr(&output);
-        let quoted = said.lines().find(|line| line.contains("to quote")).unwrap();
+        let quoted = said.lines().find(|line| line.contains(", with ")).unwrap();
         let factor = quoted
             .split("up to ")
             .nth(1)

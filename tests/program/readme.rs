@@ -4,14 +4,7 @@ use std::fs;
 use std::os::unix::fs::symlink;
 
 use crate::common::documents::{pages, repository, words};
-use crate::common::program::{archrock, printed, scenarios, stderr, stdout};
-
-fn run(arguments: &[&str]) -> String {
-    let folder = tempfile::tempdir().unwrap();
-    let output = archrock(folder.path(), arguments);
-    assert!(output.status.success(), "{}", stderr(&output));
-    String::from_utf8(output.stdout).unwrap()
-}
+use crate::common::program::{archrock, printed, scenarios, stderr, stdout, typed};
 
 /// The commands of `docs/pictures/draw` that draw a picture: its name, the file among the results (none: the command draws it with --plot),
 /// and the words of the command.
@@ -85,8 +78,12 @@ fn the_gallery_has_the_command_of_each_picture() {
 #[test]
 fn the_readme_quotes_the_output_of_run() {
     let readme = fs::read_to_string(repository().join("README.md")).unwrap();
-    let scenario = scenarios().join("semicircle-pulse.toml");
-    let said = run(&["run", scenario.to_str().unwrap()]);
+    let folder = tempfile::tempdir().unwrap();
+    symlink(scenarios(), folder.path().join("scenarios")).unwrap();
+    let said = stdout(&typed(
+        folder.path(),
+        &["run", "scenarios/semicircle-pulse.toml"],
+    ));
     let title = said.lines().next().unwrap();
     let (_, quoted) = readme.split_once(&format!("    {title}\n")).unwrap();
     let quoted = quoted.lines().map_while(|line| line.strip_prefix("    "));

@@ -126,7 +126,7 @@ fn commands_print_the_output_shown_in_the_recipes() {
 
 #[test]
 fn commands_print_the_output_shown_at_the_start() {
-    assert_page_is_true("docs/start.md", 5);
+    assert_page_is_true("docs/start.md", 6);
 }
 
 #[test]

@@ -802,8 +802,8 @@ fn a_signal_never_leaves_an_incomplete_seal() {
     for (turn, signal) in (0..30_u32).zip(["-INT", "-TERM", "-HUP"].into_iter().cycle()) {
         let name = ["weak.toml", "strong.toml"][turn as usize % 2];
         let mut child = run(name).spawn().unwrap();
-        // Most of the delays are at the end of the run.
-        sleep(whole.mul_f64(0.7 + 0.4 * f64::from(turn) / 30.0));
+        // Most of the delays are at the end of the run, which may take less time than the first one.
+        sleep(whole.mul_f64(1.1 - 0.8 * (f64::from(turn) / 30.0).powi(2)));
         let id = child.id().to_string();
         let _ = std::process::Command::new("kill")
             .args([signal, &id])

@@ -457,7 +457,7 @@ fn a_long_run_shows_its_progress_on_a_terminal() {
     }
     // Progress is not written to a file.
     let ran = Command::new("sh")
-        .args(["-c", &run("long.toml")])
+        .args(["-c", &run("long.toml --details")])
         .current_dir(root.path())
         .output()
         .unwrap();

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::common::documents::assert_generated;
+use crate::common::documents::{assert_generated, assert_generated_file};
 use syn::{Attribute, Expr, Field, Fields, GenericArgument, Item, Lit, Meta, PathArguments, Type};
 
 /// A type that is written as JSON, and its file.
@@ -163,6 +163,30 @@ fn words(kind: &Type) -> (String, String) {
     }
 }
 
+/// The type of a value in Python, with `str` for texts and objects.
+fn annotation(kind: &Type) -> String {
+    let (name, inner) = parts(kind);
+    match (&*name, inner) {
+        ("Option", Some(inner)) => format!("{} | None", annotation(inner)),
+        ("Vec", Some(inner)) => format!("list[{}]", annotation(inner)),
+        ("Sides", Some(inner)) => format!("BySide[{}]", annotation(inner)),
+        ("BTreeMap" | "Named", Some(inner)) => format!("dict[Any, {}]", annotation(inner)),
+        ("Vector2", _) => "list[float]".to_owned(),
+        ("Value" | "Map", _) => "dict[str, Any]".to_owned(),
+        _ => in_python(&words(kind).0).to_owned(),
+    }
+}
+
+/// The type in Python of a value with this type in words.
+fn in_python(words: &str) -> &'static str {
+    match words {
+        "number" => "float",
+        "whole number" => "int",
+        "true or false" => "bool",
+        _ => "str",
+    }
+}
+
 fn wrapped(inner: &Type, before: &str, after: &str) -> (String, String) {
     let (words, name) = words(inner);
     (format!("{before}{words}{after}"), name)
@@ -172,6 +196,8 @@ fn wrapped(inner: &Type, before: &str, after: &str) -> (String, String) {
 struct Row {
     key: String,
     kind: String,
+    /// Its type in Python.
+    annotation: String,
     meanings: Vec<[String; 2]>,
 }
 
@@ -179,6 +205,8 @@ struct Row {
 struct Reference<'a> {
     written: &'a [Written],
     rows: Vec<Row>,
+    /// Name of its class in Python.
+    class: String,
     /// Types that have their rows already, with the key of the first value.
     known: Vec<(&'a Written, String)>,
 }
@@ -203,11 +231,13 @@ impl<'a> Reference<'a> {
             let (_, text) = serde.split_once(&format!("{word} = \""))?;
             text.split('"').next()
         };
+        let mut annotation = annotation(&field.ty);
         let mut inside = self.found(one, &name);
         if let Some(transparent) = inside.filter(|inside| inside.is_transparent) {
             let value = transparent.variants[0].1.iter().next().unwrap();
             let (value_in_words, name_in_value) = words(&value.ty);
             kind = kind.replace("text", &value_in_words);
+            annotation = annotation.replace("str", in_python(&value_in_words));
             inside = self.found(transparent, &name_in_value);
         }
         let Some(ident) = field.ident.as_ref().filter(|_| !serde.contains("flatten")) else {
@@ -226,6 +256,7 @@ impl<'a> Reference<'a> {
         let key = format!("{before}{name}");
         if let Some(function) = text_after("serialize_with") {
             kind = written_by(function, &one.file).to_owned();
+            in_python(&kind).clone_into(&mut annotation);
             inside = None;
         }
         let is_object = |one: &&Written| one.variants.iter().any(|(_, fields)| !fields.is_empty());
@@ -238,12 +269,14 @@ impl<'a> Reference<'a> {
         if inside.is_some() {
             let as_before = known.as_ref().map(|key| format!(" as `{key}`"));
             kind = kind.replace("text", &format!("object{}", as_before.unwrap_or_default()));
+            let class = class_of(&self.class, known.as_ref().unwrap_or(&key));
+            annotation = annotation.replace("str", &class);
         }
         if serde.contains("skip_serializing_if") {
             kind = kind.strip_suffix(" or null").unwrap_or(&kind).to_owned() + ", or absent";
         }
         let meaning = [variant.to_owned(), doc(&field.attrs)];
-        self.add_row(key.clone(), kind, meaning);
+        self.add_row(key.clone(), [kind, annotation], meaning);
         if let Some(inside) = inside.filter(|_| known.is_none()) {
             self.known.push((inside, key.clone()));
             self.add(inside, &format!("{key}."));
@@ -251,18 +284,19 @@ impl<'a> Reference<'a> {
     }
 
     /// Adds a row. Variants of an enum that have the same key share its row.
-    fn add_row(&mut self, key: String, kind: String, meaning: [String; 2]) {
+    fn add_row(&mut self, key: String, [kind, annotation]: [String; 2], meaning: [String; 2]) {
         let Some(row) = self.rows.iter_mut().find(|row| row.key == key) else {
             let meanings = vec![meaning];
             self.rows.push(Row {
                 key,
                 kind,
+                annotation,
                 meanings,
             });
             return;
         };
         if kind.len() > row.kind.len() {
-            row.kind = kind;
+            (row.kind, row.annotation) = (kind, annotation);
         }
         match &mut row.meanings[..] {
             [[variant, known]] if *known == meaning[1] => variant.clear(),
@@ -282,6 +316,57 @@ impl<'a> Reference<'a> {
     }
 }
 
+/// The name of a class of Python: that of a summary, with the key of an object in it.
+fn class_of(summary: &str, key: &str) -> String {
+    let words = key.split(['_', '.', '/']).filter(|word| !word.is_empty());
+    let capital = |word: &str| word[..1].to_uppercase() + &word[1..];
+    words.fold(summary.to_owned(), |name, word| name + &capital(word))
+}
+
+/// The classes of Python with the keys of a summary and of the objects in it, for type checkers.
+fn python_classes(reference: &Reference<'_>) -> String {
+    let parent_of = |key: &str| {
+        key.rsplit_once('.')
+            .map_or("", |(parent, _)| parent)
+            .to_owned()
+    };
+    let mut parents = vec![String::new()];
+    for row in &reference.rows {
+        let parent = parent_of(&row.key);
+        parents.extend((!parents.contains(&parent)).then_some(parent));
+    }
+    let mut text = String::new();
+    for parent in &parents {
+        let class = class_of(&reference.class, parent);
+        let _ = write!(text, "\nclass {class}Keys:\n");
+        // Objects by side have no row of their own.
+        let sides = parents.iter().filter(|other| {
+            parent_of(other) == *parent && reference.rows.iter().all(|row| row.key != **other)
+        });
+        for side in sides.filter(|side| !side.is_empty()) {
+            let inside = class_of(&reference.class, side);
+            for name in ["right", "left"] {
+                let _ = writeln!(text, "    {name}: {inside}");
+            }
+        }
+        for row in reference
+            .rows
+            .iter()
+            .filter(|row| parent_of(&row.key) == *parent)
+        {
+            let name = row.key.rsplit('.').next().unwrap();
+            // Words of Python, and methods of a dictionary.
+            let is_attribute = name.chars().all(|c| c.is_alphanumeric() || c == '_')
+                && !["from", "with", "values", "keys", "items", "copy", "get"].contains(&name);
+            if is_attribute {
+                let _ = writeln!(text, "    {name}: {}", row.annotation);
+            }
+        }
+        let _ = write!(text, "\nclass {class}(Summary, {class}Keys):\n    pass\n");
+    }
+    text
+}
+
 /// The title of a study: its file, or its folder if several files share one.
 fn title_of(file: &Path) -> String {
     let shared = ["mod", "report", "summary"].map(|name| file.with_file_name(format!("{name}.rs")));
@@ -296,7 +381,7 @@ fn title_of(file: &Path) -> String {
 fn summaries_are_described_by_their_types() {
     let mut found = Vec::new();
     written(&source(), &mut found);
-    let mut text = String::new();
+    let (mut text, mut classes) = (String::new(), String::new());
     let studies = source().join("studies");
     // `MapSummary` of the study `map`, `UncertainRunSummary` of `ensemble/uncertain_run`.
     let is_of_study = |one: &&Written| {
@@ -318,9 +403,11 @@ fn summaries_are_described_by_their_types() {
         let mut reference = Reference {
             written: &found,
             rows: Vec::new(),
+            class: class_of("", &title),
             known: Vec::new(),
         };
         reference.add(one, "");
+        classes += &python_classes(&reference);
         for row in &reference.rows {
             let meanings = row.meanings.iter().flatten();
             let meanings: Vec<&str> = meanings.map(String::as_str).collect();
@@ -339,5 +426,13 @@ fn summaries_are_described_by_their_types() {
         "docs/json.md",
         "tests/program/summaries.rs from the types of src",
         &text,
+    );
+    assert_generated_file(
+        "python/package/archrock/_keys.pyi",
+        &format!(
+            "# Written by tests/program/summaries.rs from the types of src: the keys of results, for type checkers.\n\n\
+             from typing import Any, Generic, TypeVar\n\nfrom ._summary import Summary\n\n_T = TypeVar(\"_T\")\n\n\
+             class BySide(Summary, Generic[_T]):\n    right: _T\n    left: _T\n{classes}"
+        ),
     );
 }

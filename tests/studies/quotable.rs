@@ -31,23 +31,19 @@ fn the_model_with_the_fewest_assumptions_answers() {
     let free = answer(&FREE_HINGES, true, None, "2");
     let elastic = answer(&ELASTIC_JOINTS, true, None, "1");
     let all = [elastic.clone(), four.clone(), free.clone()];
-    assert_eq!(
-        quoted(&all),
-        "to quote: survives up to 1, with elastic joints"
-    );
+    assert_eq!(quoted(&all), "survives up to 1, with elastic joints");
     assert!(
-        quoted(&[four.clone(), free.clone()])
-            .starts_with("to quote: survives up to 2, with free hinges;")
+        quoted(&[four.clone(), free.clone()]).starts_with("survives up to 2, with free hinges;")
     );
     assert_eq!(
         quoted(std::slice::from_ref(&four)),
-        "to quote: survives up to 3, with four links; compare with free hinges"
+        "survives up to 3, with four links; compare with free hinges"
     );
     let unknown = Err("it is uncertain whether it overturns".to_owned());
     let unknown = ModelAnswer::new(&ELASTIC_JOINTS, true, None, unknown);
     assert_eq!(
         quoted(&[four, unknown, free]),
-        "to quote: no answer with elastic joints: it is uncertain whether it overturns"
+        "no answer with elastic joints: it is uncertain whether it overturns"
     );
     for (excess, why) in [
         (None, "was not followed"),
@@ -56,15 +52,12 @@ fn the_model_with_the_fewest_assumptions_answers() {
     ] {
         let outside = quoted(&[answer(&FOUR_LINKS, true, excess, "3")]);
         assert!(
-            outside.starts_with("to quote: no answer with four links") && outside.contains(why),
+            outside.starts_with("no answer with four links") && outside.contains(why),
             "{outside}"
         );
     }
     let block = answer(&FOUR_LINKS, false, None, "3");
-    assert_eq!(
-        quoted(&[block]),
-        "to quote: survives up to 3, with one rigid block"
-    );
+    assert_eq!(quoted(&[block]), "survives up to 3, with one rigid block");
     assert_eq!(quoted_in_words(&[]), None);
 }
 
@@ -75,11 +68,11 @@ fn a_survival_with_four_links_is_quoted_below_40_percent() {
     let quoted = |model, is_arch, excess, peak| {
         quoted_in_words(&[answer(model, is_arch, excess, "3").surviving_with(peak)]).unwrap()
     };
-    let near = "to quote: survives up to 3, with ";
+    let near = "survives up to 3, with ";
     assert!(quoted(&FOUR_LINKS, true, Some(0.04), 0.399).starts_with(near));
     assert_eq!(
         quoted(&FOUR_LINKS, true, Some(0.04), 0.4),
-        "to quote: no answer with four links: peak rotation 40 % of overturning, and with free hinges 187 of 244 such survivors from 40 % on overturn \
+        "no answer with four links: peak rotation 40 % of overturning, and with free hinges 187 of 244 such survivors from 40 % on overturn \
          (below, 6 of 620); compare with free hinges"
     );
     assert!(quoted(&FOUR_LINKS, true, Some(0.6), 0.9).contains("thrust line leaves"));
@@ -106,8 +99,8 @@ fn an_uncertain_verdict_is_not_quoted() {
         table[2].contains("free hinges") && table[2].contains("(uncertain)"),
         "{both}"
     );
-    let quoted = "\n  to quote: no answer with free hinges: it is uncertain whether it overturns\n";
-    assert_eq!(both.matches("to quote").count(), 1, "{both}");
+    let quoted = "\n  no answer with free hinges: it is uncertain whether it overturns\n";
+    assert_eq!(both.matches("no answer").count(), 1, "{both}");
     assert!(both.contains(quoted) && !both.contains("believe"), "{both}");
     assert!(run("free").contains(quoted));
 }
@@ -121,9 +114,9 @@ fn thresholds_and_runs_end_with_their_answer() {
     for (structure, named) in [
         (
             COLUMN,
-            "with one rigid block, restitution 0.888 (Housner's; measured 0.9 to 1.05 of it)",
+            "with one rigid block, restitution 0.888 (Housner's, measured 0.9 to 1.05 times that)",
         ),
-        (ARCH, "with four links; compare with free hinges"),
+        (ARCH, "with four links; if its joints have"),
     ] {
         fs::write(at.join("s.toml"), format!("{structure}{pulse}")).unwrap();
         let said = printed(at, &["threshold", "s.toml", "--stride", "0.2"]);
@@ -141,7 +134,7 @@ fn thresholds_and_runs_end_with_their_answer() {
     }
     let arch = scenarios().join("semicircle-pulse.toml");
     let said = printed(at, &["run", arch.to_str().unwrap(), "--out", "o"]);
-    let quoted = "to quote: survives this motion if its joints have a friction coefficient of 0.51, with four links; compare with free hinges";
+    let quoted = "survives this motion in both directions, with four links; if its joints have a friction coefficient of 0.51; compare with free hinges";
     assert!(
         said.contains(quoted) && said.contains("peak rotation 34 % of overturning"),
         "{said}"
@@ -152,7 +145,7 @@ fn thresholds_and_runs_end_with_their_answer() {
     let said = printed(at, &[&run[..], &stronger].concat());
     let quote = json(&at.join("p/summary.json"))["to_quote"].clone();
     let quote = quote.as_str().unwrap();
-    let none = "to quote: no answer with four links: peak rotation 45 % of overturning";
+    let none = "no answer with four links: peak rotation 45 % of overturning";
     assert!(quote.starts_with(none) && said.contains(quote), "{said}");
     let page = fs::read_to_string(at.join("p/report.html")).unwrap();
     assert!(page.contains(quote), "{quote}");
@@ -175,7 +168,7 @@ fn the_quoted_strength_is_inside_the_model_with_any_stride() {
         );
         let quote = words
             .lines()
-            .find(|line| line.contains("to quote"))
+            .find(|line| line.contains("no answer"))
             .unwrap();
         assert!(
             quote.contains("no answer with four links: their thrust line leaves"),
@@ -229,16 +222,16 @@ fn quotes_of_one_rigid_block_name_their_restitution() {
     let housner = (1.0 - 1.5 * sine_sq).powi(2);
     let wall = "[column.back]\nside = 'left'\n";
     let full = (1.0 - 1.5 * sine_sq).powi(2) * (1.5 * (1.0 - sine_sq) - 1.0);
-    let measured = "measured 0.9 to 1.05 of it";
+    let measured = "measured 0.9 to 1.05 times that";
     for (tables, due) in [
         (
             "",
-            format!("restitution {housner:.3} (Housner's; {measured})"),
+            format!("restitution {housner:.3} (Housner's, {measured})"),
         ),
         (
             "[impact]\nrestitution_factor = 1.04\n",
             format!(
-                "restitution {:.3} (1.04 of Housner's; {measured})",
+                "restitution {:.3} (1.04 of Housner's, {measured})",
                 1.04 * housner
             ),
         ),

@@ -754,7 +754,7 @@ fn a_quote_names_the_first_factor_if_lower_ones_may_overturn() {
         self::file(folder.path(), text);
         let all = format!("threshold s.toml {more}");
         let said = printed(folder.path(), &all.split(' ').collect::<Vec<_>>());
-        let quote = said.lines().find(|line| line.contains("to quote")).unwrap();
+        let quote = said.lines().find(|line| line.contains(", with ")).unwrap();
         match first {
             None => assert!(!quote.contains("not tried"), "{quote}"),
             Some(first) => {

@@ -594,7 +594,7 @@ fn the_offered_command_answers_without_a_restitution() {
     let least = safe.into_iter().fold(f64::INFINITY, f64::min);
     // The quote is the lowest value, rounded down to four digits.
     let words = found["to_quote"].as_str().unwrap();
-    let quoted = words.strip_prefix("to quote: survives up to ").unwrap();
+    let quoted = words.strip_prefix("survives up to ").unwrap();
     let (quoted, conditions) = quoted.split_once(" g").unwrap();
     let quoted: f64 = quoted.parse().unwrap();
     assert!(quoted <= least && quoted > 0.999 * least, "{words}");

@@ -270,10 +270,10 @@ impl RunSummary {
             (true, Some(false), _) | (true, None, Some(_)) => {
                 ["overturns under", " in the direction as given"]
             }
-            (true, None, None) => ["overturns under", ""],
+            (true, None, None) => ["overturns under", " in both directions"],
             (false, Some(_), _) => ["survives", directions_in_words(Directions::Both, governing)],
             (false, None, Some(only)) => ["survives", directions_in_words(only, governing)],
-            (false, None, None) => ["survives", ""],
+            (false, None, None) => ["survives", " in both directions"],
         }
     }
 }

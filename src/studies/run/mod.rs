@@ -45,6 +45,7 @@ use self::recorder::{MILLISECONDS, Output, RunRecorder, TableFiles, Tables, simu
 pub use self::report::{Report, ReportPage, page_of};
 pub use self::scales::Scales;
 use self::snapshots::Snapshots;
+use self::summary::FourLinkQuality;
 pub use self::summary::{
     ComputedRun, MirroredSummary, OutcomeSummary, RunSummary, VariedRun, summary,
 };
@@ -52,7 +53,7 @@ use self::words::records_in_words;
 pub use self::words::words_of;
 use self::words::{Printed, Words, WrittenFiles};
 use super::comparison::Comparison;
-use super::quotable::{self, ModelAnswer};
+use super::quotable::{self, ModelAnswer, free_hinges_instead};
 use super::report::Statement;
 use super::{Results, StudyError, Watch};
 use crate::dynamics::repeatability::Repetitions;
@@ -228,6 +229,7 @@ pub fn results(
     // The page may be opened elsewhere, so its words name no folder.
     results.statement = Statement {
         input: records_in_words(&scenarios[0]),
+        next: next_command(scenarios, &all),
         ..statement(&all, quote, words(false))
     };
     results.words = words(true);
@@ -235,6 +237,19 @@ pub fn results(
         results = comparison::with_page(results, &runs, &all).in_order(&FILES);
     }
     Ok(results)
+}
+
+/// The command that a user needs next: free hinges where four links are no answer, otherwise the strongest motion that the structure survives. `None`
+/// for several models, or if nothing moves the ground.
+fn next_command(scenarios: &[Scenario], all: &[ModelResults]) -> Option<String> {
+    let ([scenario], [one]) = (scenarios, all) else {
+        return None;
+    };
+    let is_outside = one.summary.four_links() == Some(FourLinkQuality::Outside);
+    let options = free_hinges_instead(scenario).filter(|_| is_outside);
+    let moves = one.summary.ground.whole_peak_g > 0.0;
+    let threshold = moves.then(|| "threshold FILE".to_owned());
+    options.map_or(threshold, |options| Some(format!("run FILE {options}")))
 }
 
 /// Statements about all models, with the answer and these details.
@@ -263,6 +278,13 @@ fn statement(all: &[ModelResults], quote: Option<&str>, details: String) -> Stat
         unlikely,
         limits,
         quote: quote.map(str::to_owned),
+        numbers: summaries()
+            .map(|summary| match all.len() {
+                1 => summary.numbers_line(),
+                _ => format!("{}: {}", summary.label(), summary.numbers_line()),
+            })
+            .collect(),
+        next: None,
         is_table: true,
     }
 }

@@ -470,20 +470,14 @@ impl RunSummary {
                 Some("the run is not repeated yet".to_owned())
             }
             (_, Some(change)) => Some(format!(
-                "THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} this motion{direction} with the given joints, and {change}"
+                "the outcome depends on the stiffness and contact of the joints: it {happens} this motion{direction} with the given ones, and {change}"
             )),
             _ if *self.model == ELASTIC_JOINTS && self.variations.is_empty() => {
                 Some("the dependence of the outcome on joint stiffness is unknown".to_owned())
             }
             _ => self.without_verdict().map(|caveat| caveat.to_string()),
         };
-        let samples = "with the given numbers: quote the probability of [uncertain] as well";
-        let samples = scenario.uncertain.as_ref().map(|_| samples.to_owned());
-        let condition = samples.map_or(String::new(), |samples| format!(" ({samples})"));
-        let answer = no_answer.map_or_else(
-            || Ok(format!("{happens} this motion{direction}{condition}")),
-            Err,
-        );
+        let answer = no_answer.map_or_else(|| Ok(format!("{happens} this motion{direction}")), Err);
         let excess_ratio = self
             .mechanisms
             .as_ref()
@@ -508,8 +502,16 @@ impl RunSummary {
             Some(peak) => answer.surviving_with(peak),
             None => answer,
         };
+        let repeated = self.repeatability.as_ref();
+        let certainty = repeated.map(|all| match all.repeatability.count.path_repeats {
+            true => "the same in all repetitions".to_owned(),
+            false => "the same in all repetitions, though their paths differ".to_owned(),
+        });
+        let samples = "this is for the given numbers: quote the probability of [uncertain] as well";
+        let samples = scenario.uncertain.as_ref().map(|_| samples.to_owned());
         answer
             .with_restitution(restitution_in_words(scenario))
+            .with_certainty(certainty.into_iter().chain(samples))
             .with_friction(SlipWords::of(scenario).condition(self.friction_demand, "run FILE"))
     }
 }

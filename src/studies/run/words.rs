@@ -44,6 +44,13 @@ pub(super) struct VerdictLine<'a> {
     pub summary: &'a RunSummary,
 }
 
+/// The main numbers: onset, ground, largest motion and end.
+#[derive(Template)]
+#[template(path = "studies/run/words/numbers.txt")]
+struct NumbersLine<'a> {
+    summary: &'a RunSummary,
+}
+
 /// The lines after the verdict.
 #[derive(Template)]
 #[template(path = "studies/run/words/words.txt")]
@@ -114,6 +121,11 @@ impl RunSummary {
     /// Verdict in words, as a run prints it.
     pub fn verdict_line(&self) -> String {
         render(&VerdictLine { summary: self })
+    }
+
+    /// The main numbers, in a line.
+    pub(super) fn numbers_line(&self) -> String {
+        super::super::results::words_of(&NumbersLine { summary: self })
     }
 
     /// True if no block moved until the end of the run.

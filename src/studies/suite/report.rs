@@ -454,6 +454,13 @@ impl Report for SuiteSummary {
         format!("{cases} cases of {records}: {}", self.outcomes)
     }
 
+    fn numbers(&self) -> Vec<String> {
+        let curve = self.curves().into_iter().next();
+        let curve = curve.and_then(|(_, curve)| curve.ok());
+        let curve = curve.map(|curve| format!("fragility over {}: {curve}", self.intensity.name()));
+        [self.verdict()].into_iter().chain(curve).collect()
+    }
+
     fn quote(&self) -> Option<&str> {
         self.to_quote.as_deref()
     }

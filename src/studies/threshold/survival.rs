@@ -132,8 +132,8 @@ const KINDS: [Option<Verdict>; 4] = [
     None,
 ];
 
-/// Largest number of ranges of one verdict in a line of words.
-const LISTED: usize = 6;
+/// Largest number of ranges of one verdict that are listed in a line of words; of more, their number, the first and the last strength are given.
+const LISTED: usize = 3;
 
 /// Ranges of each kind in words, with `beside` between kind and ranges.
 fn listed(
@@ -143,18 +143,21 @@ fn listed(
     unit: &str,
 ) -> Vec<String> {
     let of_kind = kinds.iter().filter_map(|kind| {
-        let mut all: Vec<String> = ranges
-            .iter()
-            .filter(|range| range.verdict == *kind)
-            .map(|range| match rounded_range([range.from, range.to]) {
-                _ if range.from == range.to => format_edge(range.from) + unit,
-                [from, to] => format!("{from} to {to}{unit}"),
-            })
-            .collect();
-        let more = all.len().saturating_sub(LISTED);
-        all.truncate(LISTED);
-        all.extend((more > 0).then(|| format!("{more} more")));
-        (!all.is_empty()).then(|| format!("{}{beside} {}", word(*kind), all.join(", ")))
+        let own = ranges.iter().filter(|range| range.verdict == *kind);
+        let own: Vec<&VerdictRange> = own.collect();
+        let in_words = |range: &&VerdictRange| match rounded_range([range.from, range.to]) {
+            _ if range.from == range.to => format_edge(range.from) + unit,
+            [from, to] => format!("{from} to {to}{unit}"),
+        };
+        let words = match &own[..] {
+            [] => return None,
+            [first, .., last] if own.len() > LISTED => {
+                let [from, to] = [first.from, last.to].map(format_edge);
+                format!("{} from {from} to {to}{unit}", own.len())
+            }
+            all => all.iter().map(in_words).collect::<Vec<_>>().join(", "),
+        };
+        Some(format!("{}{beside} {words}", word(*kind)))
     });
     of_kind.collect()
 }

@@ -410,9 +410,7 @@ impl SlipProgram {
             }
             let last = self.lags.len() - 1;
             let is_at_right = index == self.pins.len() && self.supports == Supports::Both;
-            let free = if index == 0 {
-                Vector3::zeros()
-            } else if is_at_right && body.is_empty() {
+            let free = if index == 0 || is_at_right && body.is_empty() {
                 Vector3::zeros()
             } else if is_at_right {
                 let from_m = self.centres_m[last - 1];
