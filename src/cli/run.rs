@@ -163,7 +163,7 @@ impl Arguments {
     /// Reads the scenarios of a file.
     fn read(&self, path: &Path, options: &RunOptions) -> Result<FileTasks, Failure> {
         let input = self.set.open(path)?.in_direction(self.direction);
-        let input = input.choosing(&self.models);
+        let input = input.choosing(self.models.chosen());
         let models = self.models.read(&input)?;
         if models.len() > 1 && self.to_stdout() {
             return Err(input.input_error("--rotations - takes one model; choose with --hinges"));

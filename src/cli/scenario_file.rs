@@ -9,7 +9,6 @@ use archrock::output::{Folder, Origin, PictureFormat};
 use archrock::scenario::{Assignment, ModelKind, ReadOptions, Scenario, Source};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-use super::models::ModelsOption;
 use super::progress::with_notice;
 use super::{Failure, check_no_errors};
 
@@ -192,9 +191,8 @@ pub struct Input<'a> {
 }
 
 impl Input<'_> {
-    /// Returns the scenario with the models of the option.
-    pub fn choosing(self, option: &ModelsOption) -> Self {
-        let models = option.chosen();
+    /// Returns the scenario with these models.
+    pub fn choosing(self, models: Vec<&'static ModelKind>) -> Self {
         Self { models, ..self }
     }
 

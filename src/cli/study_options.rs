@@ -43,7 +43,7 @@ impl StudyArguments {
     /// Reads the text of the scenario.
     pub fn open(&self) -> Result<Input<'_>, Failure> {
         let input = self.scenario.open()?.in_direction(self.direction);
-        Ok(input.choosing(&self.models))
+        Ok(input.choosing(self.models.chosen()))
     }
 
     /// Returns the task of a scenario file, with the folder for its results.

@@ -27,8 +27,7 @@ pub fn typed(folder: &Path, arguments: &[&str]) -> Output {
 pub fn archrock(folder: &Path, arguments: &[&str]) -> Output {
     let has_answer = |name: &&str| ["run", "threshold", "map", "suite", "merge"].contains(name);
     let chooses = |one: &&str| ["--quiet", "--details", "--format", "--help"].contains(one);
-    let details = arguments.first().is_some_and(|name| has_answer(name))
-        && !arguments.iter().any(|one| chooses(one));
+    let details = arguments.first().is_some_and(has_answer) && !arguments.iter().any(chooses);
     let mut arguments = arguments.to_vec();
     if details {
         arguments.insert(1, "--details");
