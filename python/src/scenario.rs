@@ -319,6 +319,9 @@ impl Ground {
 /// Gravity with which a ground motion on its own is read.
 const GRAVITY_M_S2: f64 = 9.81;
 
+/// Most samples of a ground motion.
+const MAX_SAMPLES: f64 = 1.8e6;
+
 /// Times in s and samples, in the unit of their file.
 type TimesAndSamples<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
 
@@ -348,6 +351,35 @@ impl Ground {
             archrock::scenario::Ground::Record(record) => Some(record.main.unit.name()),
             archrock::scenario::Ground::Pulse(_) => None,
         }
+    }
+
+    /// Times in s from the start of the motion to its end, and horizontal accelerations in m/s2.
+    fn sample<'py>(&self, py: Python<'py>, step_s: f64) -> PyResult<TimesAndSamples<'py>> {
+        let motion = self.motion(GRAVITY_M_S2)?;
+        let (start_s, end_s) = (motion.start_s(), motion.end_s());
+        let count = (end_s - start_s) / step_s;
+        if !(step_s > 0.0 && count < MAX_SAMPLES) {
+            return Err(refused_value(format!(
+                "`step_s = {step_s}` must be positive, and make at most {MAX_SAMPLES} samples until {end_s} s"
+            )));
+        }
+        // A small whole number; the last sample is at the end, or just after it.
+        let count = (count - 1e-9).ceil() as usize;
+        let times: Vec<f64> = (0..=count)
+            .map(|index| start_s + index as f64 * step_s)
+            .collect();
+        let mut pieces = motion.pieces.iter().peekable();
+        let accelerations = times.iter().map(|time_s| {
+            while pieces.next_if(|piece| piece.end_s <= *time_s).is_some() {}
+            pieces
+                .peek()
+                .map_or(0.0, |piece| piece.acceleration_m_s2(*time_s))
+        });
+        let accelerations: Vec<f64> = accelerations.collect();
+        Ok((
+            PyArray1::from_vec(py, times),
+            PyArray1::from_vec(py, accelerations),
+        ))
     }
 
     /// Times and samples of a record as in its file; `None` for a pulse.

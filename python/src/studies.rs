@@ -26,7 +26,8 @@ type Files<'py> = Vec<(&'static str, Bound<'py, PyBytes>)>;
 /// The columns with text of each table, by the name of its file.
 type TextColumns = Vec<(String, Vec<String>)>;
 
-fn to_python(py: Python<'_>, results: Results) -> (Files<'_>, TextColumns) {
+fn to_python(py: Python<'_>, results: Results) -> (Files<'_>, TextColumns, String) {
+    let answer = results.statement.answer(true);
     let texts = results
         .text_columns()
         .map(|(name, columns)| (name.to_owned(), columns.to_vec()))
@@ -35,7 +36,7 @@ fn to_python(py: Python<'_>, results: Results) -> (Files<'_>, TextColumns) {
         .files
         .into_iter()
         .map(|(name, contents)| (name, PyBytes::new(py, &contents)));
-    (files.collect(), texts)
+    (files.collect(), texts, answer)
 }
 
 fn kind_of(name: &str) -> PyResult<StudyKind> {
@@ -93,8 +94,8 @@ fn compute(
     })
 }
 
-/// Computes a study of a scenario, all in memory. Returns its files, their origin as JSON, and the columns with text. `factors` are those of a threshold, and `along` its range and whether impacts are left
-/// out.
+/// Computes a study of a scenario, all in memory. Returns its files, their origin as JSON, the columns with text, and the answer in words. `factors` are
+/// those of a threshold, and `along` its range and whether impacts are left out.
 #[pyfunction]
 pub fn study<'py>(
     py: Python<'py>,
@@ -104,7 +105,7 @@ pub fn study<'py>(
     along: Option<(String, bool)>,
     threads: Option<u16>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<(Files<'py>, String, TextColumns)> {
+) -> PyResult<(Files<'py>, String, TextColumns, String)> {
     let (kind, runner) = (kind_of(kind)?, runner(threads));
     let factors = factors.map(|(from, to, stride)| Factors::new(from, to, stride));
     let factors = factors
@@ -131,8 +132,8 @@ pub fn study<'py>(
     let done = compute(py, progress, kind, scenario, options, (runner, None))?;
     match done {
         Computation::Complete(results, _) => {
-            let (files, texts) = to_python(py, *results);
-            Ok((files, to_json(&Origin::of(scenario))?, texts))
+            let (files, texts, answer) = to_python(py, *results);
+            Ok((files, to_json(&Origin::of(scenario))?, texts, answer))
         }
         Computation::Partial { .. } => unreachable!("a computation in memory is no part"),
     }
@@ -165,14 +166,14 @@ pub fn compute_part(
     }
 }
 
-/// Joins the parts of a study: returns its name, the files of its results, their origin as JSON, and the columns with text. The scenario is needed only if its records
-/// cannot be found from here.
+/// Joins the parts of a study: returns its name, the files of its results, their origin as JSON, the columns with text, and the answer in words. The
+/// scenario is needed only if its records cannot be found from here.
 #[pyfunction]
 pub fn merge<'py>(
     py: Python<'py>,
     parts: Vec<PathBuf>,
     scenario: Option<&Scenario>,
-) -> PyResult<(String, Files<'py>, String, TextColumns)> {
+) -> PyResult<(String, Files<'py>, String, TextColumns, String)> {
     let scenario = scenario
         .map(|scenario| scenario.moving().map(Arc::clone))
         .transpose()?;
@@ -182,9 +183,9 @@ pub fn merge<'py>(
     let merged = watch_work(py, None, move |_| {
         studies::merge(&parts, scenario.as_deref(), &mut |_, _| Ok(STYLE)).map_err(failed)
     })?;
-    let (files, texts) = to_python(py, merged.results);
+    let (files, texts, answer) = to_python(py, merged.results);
     let (name, origin) = (merged.kind.name.to_owned(), to_json(&merged.origin)?);
-    Ok((name, files, origin, texts))
+    Ok((name, files, origin, texts, answer))
 }
 
 fn to_json(origin: &Origin) -> PyResult<String> {

@@ -36,7 +36,7 @@ def run_by(program: Program, scenario: Scenario, folder: Path) -> subprocess.Com
     (folder / "s.toml").write_text(scenario.to_toml())
     for name, contents in scenario.files.items():
         (folder / name).write_bytes(contents)
-    ran = program("run", folder / "s.toml", "--out", folder / "o", "--no-report")
+    ran = program("run", folder / "s.toml", "--out", folder / "o", "--no-report", "--details")
     assert ran.returncode == 0, ran.stderr
     return ran
 

@@ -7,6 +7,8 @@ import json
 import os
 import pickle
 import re
+import subprocess
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -57,9 +59,9 @@ def test_a_column_moves_away_from_the_wall_behind_it() -> None:
     assert history.outcome == "rest" and history.rotations.max() <= 0.0 < -history.rotations.min()
     slenderness_rad = np.arctan(0.6 / 8.0)
     rate_ratio = (1.0 - 1.5 * np.sin(slenderness_rad) ** 2) ** 2 * (1.5 * np.cos(slenderness_rad) ** 2 - 1.0)
-    impacts = [event for event in history.events if event.kind == "impact"]
+    impacts = history.impacts
     assert len(impacts) > 1
-    assert all(event.impact.restitution == pytest.approx(rate_ratio**2, rel=1e-9) for event in impacts)
+    assert all(impact.restitution == pytest.approx(rate_ratio**2, rel=1e-9) for impact in impacts)
     free = simulate(Column(8.0, 0.6), sine, duration_s=20.0)
     assert free.rotations.max() > 0.0
     drums = Column(8.0, 0.6, drums=4, back={"side": "left"})
@@ -556,3 +558,83 @@ def test_models_have_the_names_of_the_program_too(short: Any, long: Any) -> None
     assert history == simulate(arch, pulse, model=long, **settings) == Scenario.of(arch, pulse, model=short, **settings).run()
     peaks_rad = [history.summary[key] for key in history.summary if key.startswith("peak_rotation_") and key.endswith("_rad")]
     assert history.largest_peak_rotation_rad == max(map(abs, peaks_rad))
+
+
+def test_keys_of_structures_are_attributes_and_can_be_replaced() -> None:
+    arch = Arch(5.0, 0.15, 180.0, voussoirs=12)
+    assert (arch.thickness_ratio, arch.voussoirs, arch.density_kg_m3) == (0.15, 12, 2000.0)
+    with pytest.raises(AttributeError, match="'thickness_m'; it was given by: mean_radius_m, thickness_ratio"):
+        arch.thickness_m
+    thicker = arch.replace(thickness_ratio=None, thickness_m=1.0)
+    assert type(thicker) is Arch and thicker == Arch(5.0, thickness_m=1.0, embrace_deg=180.0, voussoirs=12)
+    assert thicker.limit() == Arch(5.0, 0.2, 180.0, voussoirs=12).limit()
+    with pytest.raises(ValueError, match="voussoirs"):
+        arch.replace(voussoirs=-1)
+    roof = Column(6.0, 0.6, load=[{"mass_kg": 500.0, "x_m": -0.1}])
+    assert roof.replace(width_m=0.8) == Column(6.0, 0.8, load=[{"mass_kg": 500.0, "x_m": -0.1}])
+    for copied in (pickle.loads(pickle.dumps(roof)), copy.deepcopy(roof)):
+        assert copied == roof and copied.width_m == 0.6
+    piers = Structure(pointed_arch={"span_m": 4.0, "rise_m": 3.0, "thickness_m": 0.6, "voussoirs": 20})
+    on_piers = piers.replace(piers={"height_m": 2.0, "width_m": 1.2})
+    assert on_piers.tables["piers"]["height_m"] == 2.0 and on_piers.replace(piers=None) == piers
+
+
+def test_records_have_a_step_or_a_stream() -> None:
+    accelerations = [0.0, 0.3, -0.2, 0.0]
+    timed = Record([0.0, 0.01, 0.02, 0.03], accelerations, unit="g", name="XX.STA")
+    assert Record(0.01, accelerations, unit="g", name="XX.STA") == timed
+    trace = SimpleNamespace(data=np.array(accelerations), stats=SimpleNamespace(delta=0.01), id="XX.STA")
+    assert Record.from_obspy(trace, unit="g") == Record.from_obspy([trace], unit="g") == timed
+    with pytest.raises(ValueError, match=re.escape("the stream has 2 traces: give one of them (stream[0] is XX.STA, stream[1] is XX.STA)")):
+        Record.from_obspy([trace, trace], unit="g")
+
+
+def test_ground_motions_are_sampled() -> None:
+    times, sine = Pulse.half_sine(amplitude_g=0.3, duration_s=0.5, start_s=0.2).sample(0.01)
+    inside = (times > 0.2 - 1e-9) & (times < 0.7 + 1e-9)
+    assert times[-1] == pytest.approx(0.7) and inside.sum() == 51
+    expected = np.where(inside, 0.3 * 9.81 * np.sin(np.pi * (times - 0.2) / 0.5), 0.0)
+    assert sine == pytest.approx(expected, abs=1e-12)
+    _, samples = Record(0.01, [0.0, 0.3, -0.2, 0.0], unit="g").sample(0.005)
+    assert samples / 9.81 == pytest.approx([0.0, 0.15, 0.3, 0.05, -0.2, -0.1, 0.0], abs=1e-12)
+    with pytest.raises(ValueError, match="`step_s = 0` must be positive"):
+        Pulse.half_sine(0.3, 0.5).sample(0.0)
+
+
+def test_simulate_takes_every_key_of_a_model(arch: Arch, pulse: Pulse) -> None:
+    scaled = simulate(arch, pulse, restitution_factor=0.9).impacts[0]
+    assert scaled.restitution == pytest.approx(0.9 * simulate(arch, pulse).impacts[0].restitution)
+    stack = Column(2.0, 0.5, drums=2)
+    joints: dict[str, Any] = {"model": "elastic", "normal_stiffness_gpa_m": 1.0, "duration_s": 0.5, "repeat": False}
+    weak = Pulse.half_sine(0.3, 0.2)
+    # A share of critical damping is the damping time at a frequency: ratio / (pi f).
+    by_ratio = simulate(stack, weak, **joints, damping_ratio=0.01, damping_frequency_hz=20.0)
+    by_time = simulate(stack, weak, **joints, damping_time_s=0.01 / (np.pi * 20.0))
+    assert by_ratio.rotations == pytest.approx(by_time.rotations, abs=1e-9) and by_ratio.rotations.any()
+    continuous = simulate(stack, weak, **joints, contact="continuous")
+    assert np.array_equal(continuous.rotations, simulate(stack, weak, **joints).rotations)
+
+
+def test_results_print_their_answer(arch: Arch, pulse: Pulse) -> None:
+    history = simulate(arch, Pulse.rectangular(amplitude_g=-0.28, duration_s=0.20))
+    assert str(history).splitlines() == [f"History: {repr(history)[10:].split(';')[0]}", *history.to_quote.split("; ")]
+    found = archrock.threshold(arch, pulse, stride=0.2)
+    answer = "SURVIVES up to "
+    assert repr(found).startswith(f"<Threshold: {answer}") and f"Threshold:\n  {answer}" in str(found)
+    assert pickle.loads(pickle.dumps(found)) == found and repr(pickle.loads(pickle.dumps(found))) == repr(found)
+    assert "amplitude_g: peak acceleration" in (Pulse.gabor.__doc__ or "") and "gamma: length" in (Pulse.gabor.__doc__ or "")
+    assert "gamma" not in (Pulse.ricker.__doc__ or "")
+
+
+def test_misspelt_keys_of_results_are_found_by_type_checkers(tmp_path: Path) -> None:
+    code = tmp_path / "misspelt.py"
+    code.write_text(
+        "from archrock import Arch, Pulse, simulate, threshold\n"
+        "arch, pulse = Arch(5.0, 0.15, 180.0), Pulse.half_sine(0.3, 0.5)\n"
+        "history, found = simulate(arch, pulse), threshold(arch, pulse)\n"
+        "good = (arch.voussoirs, history.steps, history.summary.ground.peak_g, found.bands[0].from_peak_g, arch.limit().right.hinges[0].edge)\n"
+        "arch.voussoir\nhistory.rotation\nhistory.summary.ground.peak\nfound.band\narch.limit().right.hinge\n"
+    )
+    checked = subprocess.run([sys.executable, "-m", "mypy", str(code)], cwd=tmp_path, capture_output=True, text=True, check=False)
+    lines = [line.split(":")[1] for line in checked.stdout.splitlines() if "error" in line and "has no attribute" in line]
+    assert lines == ["5", "6", "7", "8", "9"], checked.stdout

@@ -56,7 +56,8 @@ def test_any_structure_is_checked() -> None:
         pointed_arch={"span_m": 6.0, "rise_m": 4.0, "thickness_m": 0.6, "voussoirs": 14},
         piers={"height_m": 3.0, "width_m": 1.6},
     )
-    assert 0.0 < verify(pointed, SITE).zeta_e < 2.0
+    zeta_e = verify(pointed, SITE).zeta_e
+    assert zeta_e is not None and 0.0 < zeta_e < 2.0
     drums = verify(Column(4.0, 0.8, drums=5), SITE)
     assert drums.summary["states"]["slv"]["method"] == "displacement"
     assert drums.zeta_e == pytest.approx(0.97616, abs=5e-6)
@@ -65,7 +66,7 @@ def test_any_structure_is_checked() -> None:
 
 def test_joints_that_slide_first_have_no_ratio() -> None:
     found = verify(Column(4.0, 2.8), SITE)
-    assert found.zeta_e is None and "0.577" in found.no_zeta_e_because
+    assert found.zeta_e is None and "0.577" in (found.no_zeta_e_because or "")
     assert found.verdict == {"sld": "no_answer", "slv": "no_answer"}
     sliding = found.summary["states"]["slv"]["right"]["sliding"]
     assert sliding["bound_g"] == pytest.approx(0.577, abs=1e-7) and sliding["verdict"] == "no_answer"

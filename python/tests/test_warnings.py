@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pickle
+import subprocess
+import sys
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -100,15 +102,25 @@ def test_a_loop_shows_a_warning_of_one_kind_once() -> None:
         for radius_m in (200.0, 300.0, 4e3):
             Arch(radius_m, 0.01, 30.0, voussoirs=5).limit()
     assert [str(one.message) for one in caught] == [
-        "the mean radius is ... m: is it in centimetres?",
-        "the mean radius is ... m: is it in millimetres?",
+        "the mean radius is 200 m: is it in centimetres?",
+        "the mean radius is 4000 m: is it in millimetres?",
     ]
     (first, *_) = (one.message for one in caught)
     assert isinstance(first, ArchrockWarning)
     for same in (first, pickle.loads(pickle.dumps(first))):
         assert same.details == "the mean radius is 200 m: is it in centimetres?" and same.numbers == (200.0,)
     # Names of files keep their digits.
-    assert str(ArchrockWarning("wave-1.at2 and r2.csv peak at -3.5e-4 g (at 0.25 s).")) == "wave-1.at2 and r2.csv peak at ... g (at ... s)."
+    wave = ArchrockWarning("wave-1.at2 and r2.csv peak at -3.5e-4 g (at 0.25 s).")
+    assert wave.numbers == (-3.5e-4, 0.25)
+    assert str(wave) == f"{wave}" == wave.details
+
+
+def test_a_shown_warning_has_its_numbers() -> None:
+    code = "from archrock import Arch\nfor radius_m in (200.0, 300.0):\n    Arch(radius_m, 0.01, 30.0, voussoirs=5).limit()\n"
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stderr
+    assert shown.count("is it in centimetres?") == 1 and "ArchrockWarning: the mean radius is 200 m: is it" in shown
+    failed = subprocess.run([sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=False).stderr
+    assert failed.rstrip().endswith("the mean radius is 200 m: is it in centimetres?")
 
 
 def test_checks_issue_the_warnings_of_the_program() -> None:
@@ -117,7 +129,7 @@ def test_checks_issue_the_warnings_of_the_program() -> None:
     warned = issued(lambda: verify(arch, site))
     assert "the mean radius is 500 m: is it in centimetres?" in warned
     assert verify(arch, site).summary["warnings"] == warned
-    assert arch.limit().warnings == tuple(issued(arch.limit)) != ()
+    assert list(arch.limit().warnings) == issued(arch.limit) != []
 
 
 def test_warnings_can_be_errors(arch: Arch) -> None:

@@ -323,7 +323,18 @@ fn class_of(summary: &str, key: &str) -> String {
     words.fold(summary.to_owned(), |name, word| name + &capital(word))
 }
 
-/// The classes of Python with the keys of a summary and of the objects in it, for type checkers.
+/// The names that classes of results define themselves in a file of the Python package.
+fn defined_in_python(file: &str) -> Vec<String> {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR")).join("python/package/archrock");
+    let text = fs::read_to_string(package.join(file)).unwrap();
+    let names = text.split("    def ").skip(1);
+    names
+        .filter_map(|rest| Some(rest.split_once('(')?.0.to_owned()))
+        .collect()
+}
+
+/// The classes of Python with the keys of a summary and of the objects in it, for type checkers. Those of a summary are also attributes of its result,
+/// which has some names of its own.
 fn python_classes(reference: &Reference<'_>) -> String {
     let parent_of = |key: &str| {
         key.rsplit_once('.')
@@ -335,34 +346,63 @@ fn python_classes(reference: &Reference<'_>) -> String {
         let parent = parent_of(&row.key);
         parents.extend((!parents.contains(&parent)).then_some(parent));
     }
+    let defined = defined_in_python(match &*reference.class {
+        "Run" => "_history.py",
+        _ => "_studies.py",
+    });
     let mut text = String::new();
     for parent in &parents {
         let class = class_of(&reference.class, parent);
-        let _ = write!(text, "\nclass {class}Keys:\n");
         // Objects by side have no row of their own.
-        let sides = parents.iter().filter(|other| {
-            parent_of(other) == *parent && reference.rows.iter().all(|row| row.key != **other)
-        });
-        for side in sides.filter(|side| !side.is_empty()) {
-            let inside = class_of(&reference.class, side);
-            for name in ["right", "left"] {
-                let _ = writeln!(text, "    {name}: {inside}");
-            }
-        }
-        for row in reference
-            .rows
+        let has_no_row = |key: &String| reference.rows.iter().all(|row| row.key != *key);
+        let sides = parents
             .iter()
+            .filter(|other| !other.is_empty() && parent_of(other) == *parent && has_no_row(other));
+        let sides = sides.flat_map(|side| {
+            let inside = class_of(&reference.class, side);
+            ["right", "left"].map(|name| (name, inside.clone()))
+        });
+        let rows = reference.rows.iter();
+        let rows = rows
             .filter(|row| parent_of(&row.key) == *parent)
-        {
-            let name = row.key.rsplit('.').next().unwrap();
-            // Words of Python, and methods of a dictionary.
-            let is_attribute = name.chars().all(|c| c.is_alphanumeric() || c == '_')
-                && !["from", "with", "values", "keys", "items", "copy", "get"].contains(&name);
-            if is_attribute {
-                let _ = writeln!(text, "    {name}: {}", row.annotation);
+            .map(|row| {
+                let name = row.key.rsplit('.').next().unwrap();
+                // Objects of variants without fields have no class.
+                let class = class_of(&reference.class, &row.key);
+                let has_class = parents.contains(&row.key) || !row.annotation.contains(&class);
+                let annotation = row.annotation.clone();
+                (
+                    name,
+                    if has_class {
+                        annotation
+                    } else {
+                        annotation.replace(&class, "Any")
+                    },
+                )
+            });
+        // Words of Python, and methods of a dictionary.
+        let is_attribute = |name: &str| {
+            name.chars().all(|c| c.is_alphanumeric() || c == '_')
+                && !["from", "with", "values", "keys", "items", "copy", "get"].contains(&name)
+        };
+        let attributes: Vec<_> = sides
+            .chain(rows)
+            .filter(|(name, _)| is_attribute(name))
+            .collect();
+        let lines = |text: &mut String, is_own: &dyn Fn(&str) -> bool| {
+            for (name, annotation) in attributes.iter().filter(|(name, _)| is_own(name)) {
+                let _ = writeln!(text, "    {name}: {annotation}");
             }
-        }
+        };
+        let _ = write!(text, "\nclass {class}Keys:\n");
+        lines(&mut text, &|_| true);
         let _ = write!(text, "\nclass {class}(Summary, {class}Keys):\n    pass\n");
+        if parent.is_empty() {
+            let property = format!("    @property\n    def summary(self) -> {class}: ...\n");
+            let _ = write!(text, "\nclass {class}Result:\n{property}");
+            let is_defined = |name: &str| defined.iter().any(|own| own == name);
+            lines(&mut text, &|name| !is_defined(name));
+        }
     }
     text
 }

@@ -37,6 +37,19 @@ class Ground(Described):
         """Its kind, as named in a scenario."""
         return next(iter(self._tables))
 
+    def sample(self, step_s: float = 0.005) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Times in s from its start to its end, ``step_s`` apart, and horizontal accelerations in m/s2, each of shape ``(samples,)``.
+
+        One g is 9.81 m/s2. At a jump the acceleration is that after it.
+
+        >>> Pulse.rectangular(amplitude_g=0.1, duration_s=0.01).sample()[1].round(3)
+        array([0.981, 0.981, 0.   ])
+
+        Raises:
+            ValueError: when ``step_s`` is not a positive number, or makes more than 1,800,000 samples.
+        """
+        return self._native.sample(step_s)
+
 
 class Pulse(Ground):
     """A ground acceleration given by a formula, positive to the right. Each kind has a constructor.
@@ -268,12 +281,41 @@ class Pulse(Ground):
         )
 
 
+_ARGUMENTS = """
+
+Args:
+    amplitude_g: peak acceleration in units of gravity, positive to the right.
+    duration_s: length in s of the part of the pulse that the first line names.
+{own}    start_s: time in s at which it begins.
+    vertical_amplitude_g: peak of a vertical acceleration of the same shape in units of gravity, positive upwards.
+
+Raises:
+    ValueError: when a number is not allowed, with the library's explanation.
+"""
+_OWN = {
+    "gamma": "    gamma: length in periods.\n",
+    "cycles": "    cycles: length in periods.\n",
+    "phase_deg": "    phase_deg: phase in degrees.\n",
+}
+
+
+def _explain(constructor: Any) -> None:
+    """Adds the arguments, which most constructors share, to the help of a constructor."""
+    own = "".join(text for name, text in _OWN.items() if name in constructor.__annotations__)
+    constructor.__doc__ = constructor.__doc__ + _ARGUMENTS.format(own=own)
+
+
+for _constructor in vars(Pulse).values():
+    if isinstance(_constructor, classmethod) and _constructor.__func__.__doc__:
+        _explain(_constructor.__func__)
+
+
 class Record(Ground):
     """A recorded ground motion: straight lines between samples, zero before the first and after the last.
 
     Args:
         time: times in s, rising by at least a microsecond, shape ``(samples,)``, 2 to 1,800,000; anything like an
-            array.
+            array. Or a number: the time between samples, of which the first is at time zero.
         acceleration: accelerations in ``unit``, or velocities if ``quantity`` says so, shape ``(samples,)``.
         unit: ``"g"``, ``"mg"``, ``"g/10"``, ``"m/s2"``, ``"cm/s2"``, ``"mm/s2"``, ``"in/s2"`` or ``"ft/s2"``; ``"m/s"``,
             ``"cm/s"`` or ``"mm/s"`` for velocities.
@@ -299,7 +341,7 @@ class Record(Ground):
 
     def __init__(
         self,
-        time: npt.ArrayLike,
+        time: npt.ArrayLike | float,
         acceleration: npt.ArrayLike,
         *,
         unit: Unit,
@@ -329,7 +371,8 @@ class Record(Ground):
             "scale": scale,
             "peak_g": peak_g,
         }
-        files: Held = {name: Samples.of(time, acceleration)}
+        times = np.arange(np.size(acceleration)) * float(time) if isinstance(time, (int, float)) else time
+        files: Held = {name: Samples.of(times, acceleration)}
         if vertical is not None:
             table["vertical"], held = vertical._as_vertical(name)
             files.update(held)
@@ -401,20 +444,30 @@ class Record(Ground):
 
     @classmethod
     def from_obspy(cls, trace: Any, *, unit: Unit, **keys: Any) -> Record:
-        """The record of a trace of ObsPy, or of anything with its ``data``, ``stats.delta`` and ``id``.
+        """The record of a trace of ObsPy, of a stream with one trace, or of anything with its ``data``, ``stats.delta`` and ``id``.
 
         Times count from the first sample. A trace does not name its unit: remove the instrument response first.
 
+        >>> from types import SimpleNamespace
+        >>> trace = SimpleNamespace(data=[0.0, 0.1, 0.0], stats=SimpleNamespace(delta=0.01), id="XX.STA")
+        >>> Record.from_obspy([trace], unit="g")
+        <Record 'XX.STA': 3 samples in g until 0.02 s>
+
         Args:
-            trace: the trace.
+            trace: the trace, or the stream.
             unit: unit of its data.
             keys: further arguments of :class:`Record`.
 
         Raises:
-            ValueError: as for :class:`Record`.
+            ValueError: as for :class:`Record`, and for a stream with several traces, whose ids it names.
         """
-        time = np.arange(len(trace.data)) * float(trace.stats.delta)
-        return cls(time, trace.data, unit=unit, **{"name": str(trace.id), **keys})
+        if not hasattr(trace, "data"):
+            traces = list(trace)
+            if len(traces) != 1:
+                ids = ", ".join(f"stream[{index}] is {one.id}" for index, one in enumerate(traces))
+                raise ValueError(f"the stream has {len(traces)} traces: give one of them ({ids})")
+            trace = traces[0]
+        return cls(float(trace.stats.delta), trace.data, unit=unit, **{"name": str(trace.id), **keys})
 
     @property
     def name(self) -> str:

@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
-from ._summary import Part
+from ._summary import Part, Untyped
+
+if TYPE_CHECKING:
+    from ._keys import ImpactImpactsKeys, LimitKeys
+else:
+    ImpactImpactsKeys = LimitKeys = Untyped
 
 
 class Hinge(Part):
@@ -21,20 +26,31 @@ class Hinge(Part):
 
     __slots__ = ()
 
-    def __getattr__(self, name: str) -> Any:
-        if name in ("angle_deg", "edge", "toe", "joint"):
-            return self.get(name)
-        return super().__getattr__(name)
+    angle_deg: float | None
+    edge: str | None
+    toe: str | None
+    joint: int | None
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            if name in ("angle_deg", "edge", "toe", "joint"):
+                return self.get(name)
+            return super().__getattr__(name)
 
 
 class Mechanism(Part):
     """A mechanism of a structure: ``sway``, and ``hinges`` from left to right, as ``impacts.before`` of ``archrock impact``."""
 
     __slots__ = ()
+
+    sway: str
+    hinges: tuple[Hinge, ...]
+
     _parts: ClassVar[Mapping[str, type[Part]]] = {"hinges": Hinge}
 
 
-class ChainLink(Part):
+class ChainLink(ImpactImpactsKeys, Part):
     """An impact in the chain of mechanisms that follow each other from impact to impact.
 
     Its keys are those of ``impacts`` of ``archrock impact``, such as ``index``, ``restitution``, ``before`` and ``after``.
@@ -53,15 +69,23 @@ class Onset(Part):
     """
 
     __slots__ = ()
+
+    acceleration_g: float | None
+    hinges: tuple[Hinge, ...]
+
     _parts: ClassVar[Mapping[str, type[Part]]] = {"hinges": Hinge}
 
 
 class _BySide(Part):
     __slots__ = ()
+
+    right: Any
+    left: Any
+
     _parts: ClassVar[Mapping[str, type[Part]]] = {"right": Hinge, "left": Hinge}
 
 
-class Limit(Part):
+class Limit(LimitKeys, Part):
     """Onset of rocking by limit analysis: its keys are those of ``archrock limit --format json``."""
 
     __slots__ = ()

@@ -6,13 +6,13 @@ import html
 import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, cast
 
 import numpy as np
 
 from . import _native
 from ._hinge import Hinge
-from ._summary import Part, Summarised, Summary
+from ._summary import Part, Summarised, Summary, Untyped
 from ._warnings import warn
 
 if TYPE_CHECKING:
@@ -20,13 +20,16 @@ if TYPE_CHECKING:
     import pandas
     from matplotlib.axes import Axes
 
+    from ._keys import EventImpactKeys, EventKeys, Run, RunResult
     from ._scenario import Scenario
 
     Floats = npt.NDArray[np.float64]
     Whole = npt.NDArray[np.int64]
+else:
+    EventImpactKeys = EventKeys = RunResult = Untyped
 
 
-class Impact(Part):
+class Impact(EventImpactKeys, Part):
     """An impact. Its keys are those of ``impact`` in the table of events of ``docs/json.md``, ``time_s`` and ``sway_after``.
 
     Rates are those of the bodies in rad/s, anticlockwise, just before and just after; hinges that ``closed`` and ``opened`` are in order from
@@ -36,12 +39,17 @@ class Impact(Part):
     __slots__ = ()
     _parts: ClassVar[Mapping[str, type[Part]]] = {"closed": Hinge, "opened": Hinge}
 
+    time_s: float
+    sway_after: str | None
 
-class Event(Part):
+
+class Event(EventKeys, Part):
     """An event of a history, and the state just after it. Its keys are in the table of events of ``docs/json.md``."""
 
     __slots__ = ()
     _parts: ClassVar[Mapping[str, type[Part]]] = {"hinges": Hinge, "impact": Impact}
+
+    impact: Impact | None  # type: ignore[assignment]
 
 
 def _axes(ax: Axes | None) -> Axes:
@@ -51,7 +59,7 @@ def _axes(ax: Axes | None) -> Axes:
     return pyplot.subplots(figsize=(9.0, 5.0), layout="constrained")[1] if ax is None else ax
 
 
-class History(Summarised):
+class History(RunResult, Summarised):
     """The motion of a structure: samples as arrays, events, and a summary.
 
     The keys of :attr:`summary` are attributes too, such as ``outcome``, ``outcome_time_s``, ``overturning_sway`` and
@@ -266,7 +274,7 @@ class History(Summarised):
         return tuple(event.impact for event in self.events if event.impact is not None)
 
     @property
-    def summary(self) -> Summary:
+    def summary(self) -> Run:
         """The contents of the program's ``summary.json`` (a copy), with :attr:`verdict` and ``repeatability``.
 
         At its first use a history with free hinges or elastic joints is simulated again in other, equally good ways, such as with double
@@ -277,7 +285,7 @@ class History(Summarised):
             native = self._native or self.scenario.run(repeat=self._repeat)._native
             assert native is not None, "a history that was run is there"
             self._kept["summary"] = native.summary_json(self._repeat)
-        return Summary._parse(self._kept["summary"])
+        return cast("Run", Summary._parse(self._kept["summary"]))
 
     @property
     def verdict(self) -> str:
@@ -321,13 +329,13 @@ class History(Summarised):
         numbers: Summary = self._once("numbers", make)
         return numbers
 
-    def __getattr__(self, name: str) -> Any:
+    def _attribute(self, name: str) -> Any:
         if not name.startswith("_"):
             # These take negligible time to compute.
             ended = self._once("ended", lambda native: json.loads(native.ended_json()))
             if name in ended:
                 return ended[name]
-        return super().__getattr__(name)
+        return super()._attribute(name)
 
     def spread(self) -> NoReturn:
         """Replaced by :meth:`repeatability`."""
@@ -497,6 +505,10 @@ class History(Summarised):
 
     def __repr__(self) -> str:
         return f"<History: {self._words()}; {len(self)} samples>"
+
+    def __str__(self) -> str:
+        """The answer that may be quoted and its conditions, a line each."""
+        return "\n".join([f"History: {self._words()}", *self.to_quote.split("; ")])
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, History):

@@ -20,6 +20,15 @@ class CapacityKeys:
 class Capacity(Summary, CapacityKeys):
     pass
 
+class CapacityResult:
+    @property
+    def summary(self) -> Capacity: ...
+    capacity: BySide[CapacityCapacity | None]
+    masses: str
+    warnings: list[str]
+    unlikely: list[CapacityUnlikely]
+    scenario: dict[str, Any]
+
 class CapacityCapacityKeys:
     control_point_m: list[float]
     acceleration_g: float
@@ -89,6 +98,38 @@ class EnsembleUncertainMapKeys:
 
 class EnsembleUncertainMap(Summary, EnsembleUncertainMapKeys):
     pass
+
+class EnsembleUncertainMapResult:
+    @property
+    def summary(self) -> EnsembleUncertainMap: ...
+    program: str
+    version: str
+    scenario: dict[str, Any]
+    warnings: list[str]
+    unlikely: list[EnsembleUncertainMapUnlikely]
+    one_direction: str | None
+    samples: int
+    answered: int
+    invalid: int
+    failed: int
+    incomplete: int
+    outside: int
+    outside_model: int | None
+    four_link_histories: int
+    largest_thrust_excess_ratio: float | None
+    friction_demand: float | None
+    friction_condition: str | None
+    own_without_answer: str | None
+    without_answer: list[EnsembleUncertainMapWithoutAnswer]
+    not_considered: str
+    what_matters: EnsembleUncertainMapWhatMatters
+    cells: int
+    cells_at_levels: list[int]
+    own: EnsembleUncertainMapOwn | None
+    crossings: list[EnsembleUncertainMapCrossings]
+    histories_without_outcome: EnsembleUncertainMapHistoriesWithoutOutcome
+    first_without_outcome: str | None
+    part_that_overturns: EnsembleUncertainMapPartThatOverturns
 
 class EnsembleUncertainMapUnlikelyKeys:
     key: str
@@ -182,6 +223,35 @@ class EnsembleUncertainRunKeys:
 class EnsembleUncertainRun(Summary, EnsembleUncertainRunKeys):
     pass
 
+class EnsembleUncertainRunResult:
+    @property
+    def summary(self) -> EnsembleUncertainRun: ...
+    program: str
+    version: str
+    scenario: dict[str, Any]
+    warnings: list[str]
+    unlikely: list[EnsembleUncertainRunUnlikely]
+    one_direction: str | None
+    samples: int
+    answered: int
+    invalid: int
+    failed: int
+    incomplete: int
+    outside: int
+    outside_model: int | None
+    four_link_histories: int
+    largest_thrust_excess_ratio: float | None
+    friction_demand: float | None
+    friction_condition: str | None
+    own_without_answer: str | None
+    without_answer: list[EnsembleUncertainRunWithoutAnswer]
+    not_considered: str
+    what_matters: EnsembleUncertainRunWhatMatters
+    own: EnsembleUncertainRunOwn | None
+    outcomes: dict[Any, EnsembleUncertainRunOutcomes]
+    peak_rotation_rad: EnsembleUncertainRunPeakRotationRad
+    followed_body: int
+
 class EnsembleUncertainRunUnlikelyKeys:
     key: str
     value: float | None
@@ -274,6 +344,39 @@ class EnsembleUncertainSuiteKeys:
 
 class EnsembleUncertainSuite(Summary, EnsembleUncertainSuiteKeys):
     pass
+
+class EnsembleUncertainSuiteResult:
+    @property
+    def summary(self) -> EnsembleUncertainSuite: ...
+    program: str
+    version: str
+    scenario: dict[str, Any]
+    warnings: list[str]
+    unlikely: list[EnsembleUncertainSuiteUnlikely]
+    one_direction: str | None
+    samples: int
+    answered: int
+    invalid: int
+    failed: int
+    incomplete: int
+    outside: int
+    outside_model: int | None
+    four_link_histories: int
+    largest_thrust_excess_ratio: float | None
+    friction_demand: float | None
+    friction_condition: str | None
+    own_without_answer: str | None
+    without_answer: list[EnsembleUncertainSuiteWithoutAnswer]
+    not_considered: str
+    what_matters: EnsembleUncertainSuiteWhatMatters
+    intensity: str
+    to_quote: str | None
+    quote: str
+    first_intensity: EnsembleUncertainSuiteFirstIntensity
+    own_first_intensity: EnsembleUncertainSuiteFirstIntensity
+    records: int
+    edges: int
+    at_lowest_level: int
 
 class EnsembleUncertainSuiteUnlikelyKeys:
     key: str
@@ -369,6 +472,43 @@ class EnsembleUncertainThresholdKeys:
 class EnsembleUncertainThreshold(Summary, EnsembleUncertainThresholdKeys):
     pass
 
+class EnsembleUncertainThresholdResult:
+    @property
+    def summary(self) -> EnsembleUncertainThreshold: ...
+    program: str
+    version: str
+    scenario: dict[str, Any]
+    warnings: list[str]
+    unlikely: list[EnsembleUncertainThresholdUnlikely]
+    one_direction: str | None
+    samples: int
+    answered: int
+    invalid: int
+    failed: int
+    incomplete: int
+    outside: int
+    outside_model: int | None
+    four_link_histories: int
+    largest_thrust_excess_ratio: float | None
+    friction_demand: float | None
+    friction_condition: str | None
+    own_without_answer: str | None
+    without_answer: list[EnsembleUncertainThresholdWithoutAnswer]
+    not_considered: str
+    what_matters: EnsembleUncertainThresholdWhatMatters
+    to_quote: str | None
+    counted: int
+    rank_of_limit: int | None
+    lower_limit_factor: float | None
+    survives_up_to_factor: EnsembleUncertainThresholdSurvivesUpToFactor
+    own_survives_up_to_factor: float | None
+    at_smallest_factor: int
+    beyond_largest_factor: int
+    tried_to_factor: float | None
+    own_first_factor: float | None
+    own_first_factor_at_most: bool
+    overturned_up_to_factor_1: EnsembleUncertainThresholdOverturnedUpToFactor1 | None
+
 class EnsembleUncertainThresholdUnlikelyKeys:
     key: str
     value: float | None
@@ -442,6 +582,20 @@ class ImpactKeys:
 
 class Impact(Summary, ImpactKeys):
     pass
+
+class ImpactResult:
+    @property
+    def summary(self) -> Impact: ...
+    impacts_after_left: list[ImpactImpacts] | None
+    models: list[ImpactModels] | None
+    certificate: ImpactCertificate | None
+    warnings: list[str]
+    unlikely: list[ImpactUnlikely]
+    starts: list[ImpactImpactsBefore]
+    count: int
+    chosen: str | None
+    model: str
+    restitution_factor: float
 
 class ImpactImpactsKeys:
     index: int
@@ -578,6 +732,29 @@ class LimitKeys:
 
 class Limit(Summary, LimitKeys):
     pass
+
+class LimitResult:
+    @property
+    def summary(self) -> Limit: ...
+    incipient_acceleration_g: BySide[float | None]
+    incipient_acceleration_m_s2: BySide[float | None]
+    no_push_because: str | None
+    mechanism: BySide[list[LimitMechanism]]
+    friction_demand: BySide[float | None]
+    unstable_rotations: dict[Any, float] | None
+    equivalent_block: LimitEquivalentBlock | None
+    to_the_left: LimitToTheLeft | None
+    capacity_g: BySide[float | None] | None
+    capacity_not_found: BySide[str | None] | None
+    wall_behind: str | None
+    hinges: list[LimitHinges] | None
+    ties: LimitTies | None
+    four_links: LimitFourLinks | None
+    friction: LimitFriction | None
+    warnings: list[str]
+    unlikely: list[LimitUnlikely]
+    bodies: list[str]
+    tie_places: list[str]
 
 class LimitMechanismKeys:
     joint: int
@@ -725,6 +902,33 @@ class MapKeys:
 class Map(Summary, MapKeys):
     pass
 
+class MapResult:
+    @property
+    def summary(self) -> Map: ...
+    program: str
+    version: str
+    scenario: dict[str, Any]
+    warnings: list[str]
+    unlikely: list[MapUnlikely]
+    record_checksums: list[str]
+    one_direction: str | None
+    cases: int
+    friction_demand: float | None
+    friction_condition: str | None
+    failures: list[MapFailures]
+    uncertain_cases: list[MapFailures]
+    outside_model: int | None
+    four_link_histories: int
+    largest_thrust_excess_ratio: float | None
+    histories: int
+    histories_without_verdict: int
+    longest_step_s: MapLongestStepS | None
+    shortest_step_s: MapLongestStepS | None
+    outcomes: str
+    mirrored: int
+    for_looking: str | None
+    other_outcomes_in_repetitions: int | None
+
 class MapUnlikelyKeys:
     key: str
     value: float | None
@@ -759,6 +963,12 @@ class PeaksKeys:
 
 class Peaks(Summary, PeaksKeys):
     pass
+
+class PeaksResult:
+    @property
+    def summary(self) -> Peaks: ...
+    models: list[PeaksModels]
+    pairs: list[PeaksPairs]
 
 class PeaksModelsKeys:
     model: str
@@ -809,6 +1019,35 @@ class RecordKeys:
 
 class Record(Summary, RecordKeys):
     pass
+
+class RecordResult:
+    @property
+    def summary(self) -> Record: ...
+    file: str
+    format: str
+    sampling: str
+    channel: int | None
+    channel_name: str | None
+    quantity: str
+    unit: str
+    samples: int
+    dt_s: float | None
+    duration_s: float
+    gravity_m_s2: float
+    peak_acceleration_m_s2: float
+    peak_acceleration_time_s: float
+    mean_acceleration_g: float
+    mean_removed: bool
+    baseline: str | None
+    high_pass_hz: float | None
+    corrections: str
+    peak_velocity_m_s: float
+    peak_velocity_time_s: float
+    peak_displacement_m: float
+    peak_displacement_time_s: float
+    arias_intensity_m_s: float
+    significant_from_s: float
+    significant_to_s: float
 
 class RunKeys:
     program: str
@@ -902,6 +1141,89 @@ class RunKeys:
 
 class Run(Summary, RunKeys):
     pass
+
+class RunResult:
+    @property
+    def summary(self) -> Run: ...
+    program: str
+    version: str
+    model: str
+    record_checksums: list[str]
+    warnings: list[str]
+    unlikely: list[RunUnlikely]
+    outcome: str
+    outcome_time_s: float
+    overturning_sway: str | None
+    end_s: float
+    first_impact: RunFirstImpact | None
+    hardest_impact: RunFirstImpact | None
+    largest_peak_rotation_rad: float
+    incipient_acceleration_g: BySide[float | None]
+    wall_behind: str | None
+    ground: RunGround
+    energy_defect_ratio: float
+    largest_friction_demand: float
+    largest_friction_demand_time_s: float
+    lasting_friction_demand: float | None
+    steps: int
+    peak_rotation_over_critical: float | None
+    remaining_energy_over_barrier: float | None
+    dimensionless: RunDimensionless | None
+    largest_thrust_excess_ratio: float
+    largest_thrust_excess_time_s: float
+    rocking_share_thrust_excess_below_0_01: float | None
+    rocking_share_thrust_excess_below_0_05: float | None
+    four_links: str | None
+    is_continuous: bool
+    evaluations: int
+    half_cycles: list[RunHalfCycles]
+    largest_compressive_stress_pa: float
+    largest_compressive_stress_joint: int
+    largest_compressive_stress_time_s: float
+    elastic_j: float
+    damped_j: float
+    friction_j: float
+    crushed_j: float
+    ties_j: float
+    rest_eccentricity_ratio: float
+    rest_eccentricity_joint: int
+    opening_tolerance_m: float
+    vibrates_since_s: float | None
+    slips_m: list[float]
+    largest_slips_m: list[float]
+    unconverged_steps: int
+    friction_bound_error: float
+    peak_potential_over_barrier: float | None
+    ties: list[RunTies]
+    largest_kinetic_j: float
+    largest_potential_j: float
+    energy_taken_j: float
+    ground_j: float
+    right_foot_j: float
+    energy_defect_over_largest: float
+    least_normal_n: float
+    closure_error_m: float
+    longest_step_s: float
+    shortest_step_s: float
+    programs: int
+    most_iterations: int
+    relaxed: int
+    merged: int
+    step_halvings: int
+    start_s: float
+    feet_farthest_apart_m: list[float]
+    feet_farthest_apart_time_s: float
+    feet_apart_at_end_m: list[float]
+    records_end_s: list[float] | None
+    friction_coefficient: float | None
+    compressive_strength_mpa: float | None
+    slipped_joints: list[int]
+    iterations: int
+    points: list[RunPoints]
+    compared_models: list[str]
+    ignores_elastic_joints: bool
+    uncertain: dict[str, Any] | None
+    longest_step_us: float | None
 
 class RunUnlikelyKeys:
     key: str
@@ -1070,6 +1392,18 @@ class SpreadKeys:
 class Spread(Summary, SpreadKeys):
     pass
 
+class SpreadResult:
+    @property
+    def summary(self) -> Spread: ...
+    clear_span_m: float
+    weight_n: float
+    support: str
+    friction_coefficient: float | None
+    paths: list[SpreadPaths]
+    warnings: list[str]
+    unlikely: list[SpreadUnlikely]
+    scenario: dict[str, Any]
+
 class SpreadPathsKeys:
     springing: str
     angle_deg: float
@@ -1191,6 +1525,56 @@ class SuiteKeys:
 class Suite(Summary, SuiteKeys):
     pass
 
+class SuiteResult:
+    @property
+    def summary(self) -> Suite: ...
+    program: str
+    version: str
+    scenario: dict[str, Any]
+    warnings: list[str]
+    unlikely: list[SuiteUnlikely]
+    to_quote: str | None
+    friction_demand: float | None
+    outcomes: str
+    intensity: str
+    median: float | None
+    median_standard_error: float | None
+    median_standard_error_by_record: float | None
+    median_interval: list[float] | None
+    extrapolated_beyond: float | None
+    dispersion: float | None
+    dispersion_standard_error: float | None
+    dispersion_standard_error_by_record: float | None
+    dispersion_interval: list[float] | None
+    log_likelihood: float | None
+    no_fit: str | None
+    records: int
+    cases: int
+    overturned: int
+    still_rocking_counted_as_not_overturned: int
+    incomplete_left_out: int
+    failed_left_out: int
+    levels: SuiteLevels
+    survivals: list[SuiteSurvivals]
+    spectral: SuiteSpectral
+    capacities: int
+    capacities_at_most: int
+    intensity_measures: list[SuiteIntensityMeasures]
+    mirrored_cases_count: bool
+    records_that_never_overturn: list[str]
+    records_that_always_overturn: list[str]
+    with_uncertain_as_survived: SuiteWithUncertainAsSurvived | None
+    with_uncertain_as_overturned: SuiteWithUncertainAsSurvived | None
+    failures: list[SuiteFailures]
+    uncertain_cases: list[SuiteFailures]
+    outside_model: int | None
+    four_link_histories: int
+    largest_thrust_excess_ratio: float | None
+    histories: int
+    histories_without_verdict: int
+    longest_step_s: SuiteLongestStepS | None
+    shortest_step_s: SuiteLongestStepS | None
+
 class SuiteUnlikelyKeys:
     key: str
     value: float | None
@@ -1308,6 +1692,34 @@ class ThresholdAlongKeys:
 class ThresholdAlong(Summary, ThresholdAlongKeys):
     pass
 
+class ThresholdAlongResult:
+    @property
+    def summary(self) -> ThresholdAlong: ...
+    program: str
+    version: str
+    scenario: dict[str, Any]
+    warnings: list[str]
+    unlikely: list[ThresholdAlongUnlikely]
+    record_checksums: list[str]
+    one_direction: str | None
+    cases: int
+    friction_demand: float | None
+    friction_condition: str | None
+    failures: list[ThresholdAlongFailures]
+    uncertain_cases: list[ThresholdAlongFailures]
+    outside_model: int | None
+    four_link_histories: int
+    largest_thrust_excess_ratio: float | None
+    histories: int
+    histories_without_verdict: int
+    longest_step_s: ThresholdAlongLongestStepS | None
+    shortest_step_s: ThresholdAlongLongestStepS | None
+    to_quote: str | None
+    values_without_verdict: int
+    along: ThresholdAlongAlong
+    factors: ThresholdAlongFactors
+    no_impact: bool
+
 class ThresholdAlongUnlikelyKeys:
     key: str
     value: float | None
@@ -1385,6 +1797,20 @@ class ThresholdKeys:
 
 class Threshold(Summary, ThresholdKeys):
     pass
+
+class ThresholdResult:
+    @property
+    def summary(self) -> Threshold: ...
+    program: str
+    version: str
+    record: str | None
+    peak_acceleration_g: float
+    factors: ThresholdFactors
+    free_fall_factor: float | None
+    warnings: list[str]
+    unlikely: list[ThresholdUnlikely]
+    to_quote: str | None
+    models: list[ThresholdModels]
 
 class ThresholdFactorsKeys:
     to: float | None
@@ -1556,6 +1982,39 @@ class VerifyKeys:
 class Verify(Summary, VerifyKeys):
     pass
 
+class VerifyResult:
+    @property
+    def summary(self) -> Verify: ...
+    program: str
+    version: str
+    title: str | None
+    formulas: str | None
+    scenario_sha256: str
+    zeta_e: float | None
+    no_zeta_e_because: str | None
+    verdict: dict[Any, str]
+    confidence_factor: float
+    behaviour_factor: float
+    sides: str
+    wall_behind: str | None
+    t0_s: float | None
+    gravity_m_s2: float
+    allowed_friction: float
+    mechanisms: dict[Any, VerifyMechanisms]
+    states: dict[Any, VerifyStates]
+    warnings: list[str]
+    unlikely: list[VerifyUnlikely]
+    decisions: list[VerifyDecisions]
+    assumptions: list[str]
+    not_covered: list[str]
+    scenario: dict[str, Any]
+    tie_places: list[str]
+    is_symmetric: bool
+    top: str
+    geometry: VerifyGeometry
+    free_standing: VerifyFreeStanding | None
+    language: str
+
 class VerifyFilesKeys:
     file: str
     sha256: str
@@ -1588,7 +2047,7 @@ class VerifyMechanismsKeys:
     friction: float | None
     curve_m_g: list[list[float]] | None
     positions: list[VerifyMechanismsPositions]
-    no_curve: VerifyMechanismsNoCurve | None
+    no_curve: Any | None
     sliding: VerifyMechanismsSliding | None
 
 class VerifyMechanisms(Summary, VerifyMechanismsKeys):
@@ -1941,6 +2400,20 @@ class EventKeys:
 
 class Event(Summary, EventKeys):
     pass
+
+class EventResult:
+    @property
+    def summary(self) -> Event: ...
+    time_s: float
+    kind: str
+    state: str
+    mechanism: int | None
+    rotations_rad: list[float]
+    rates_rad_s: list[float]
+    energy_j: float
+    hinges: list[EventHinges]
+    impact: EventImpact | None
+    tie: int | None
 
 class EventHingesKeys:
     angle_deg: float

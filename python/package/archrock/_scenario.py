@@ -315,6 +315,7 @@ def simulate(
     model: Model = "four_links",
     impact: str = "max_restitution",
     restitution: float | None = None,
+    restitution_factor: float | None = None,
     initial_sway: Literal["right", "left"] | None = None,
     initial_rotation_rad: float | None = None,
     initial_rate_rad_s: float | None = None,
@@ -329,7 +330,10 @@ def simulate(
     mortar_modulus_gpa: float | None = None,
     mortar_thickness_m: float | None = None,
     damping_time_s: float | None = None,
+    damping_ratio: float | None = None,
+    damping_frequency_hz: float | None = None,
     compressive_strength_mpa: float | None = None,
+    contact: Literal["continuous"] | None = None,
     contact_points: int | None = None,
     duration_s: float | None = None,
     output_step_s: float = 0.005,
@@ -358,6 +362,7 @@ def simulate(
         impact: impact model of four links: ``"max_restitution"``, ``"same_sections"``, ``"mirrored"`` or
             ``"prescribed"``.
         restitution: energy after over before an impact, with ``"prescribed"``.
+        restitution_factor: factor on the restitution of the impact model, as measured over predicted; ``None``: 1.
         initial_sway: side to which it is rotated or starts with a rate, ``"right"`` or ``"left"``.
         initial_rotation_rad: magnitude of that rotation, for the body whose rotation is the coordinate.
         initial_rate_rad_s: rate of that rotation, positive away from the position at rest.
@@ -373,8 +378,11 @@ def simulate(
         mortar_modulus_gpa: Young's modulus of the mortar, with ``mortar_thickness_m``.
         mortar_thickness_m: thickness of the mortar.
         damping_time_s: damping forces are this time multiplied by the rates of the elastic forces; ``None``: the default, 1e-4.
+        damping_ratio: share of critical damping at ``damping_frequency_hz``, instead of ``damping_time_s``.
+        damping_frequency_hz: frequency of that share.
         compressive_strength_mpa: stress at which elastic joints crush; ``None``: they do not crush.
-        contact_points: number of points that carry the stress of a joint; ``None``: the whole joint does.
+        contact: ``"continuous"``: the whole joint carries stress, the default.
+        contact_points: number of points that carry the stress of a joint, instead.
         duration_s: longest time to simulate; ``None``: until the end of the ground motion, and then for the larger of 10 s and
             20 times the square root of size over gravity.
         output_step_s: time between samples.
@@ -400,6 +408,7 @@ def simulate(
         model,
         impact,
         restitution,
+        restitution_factor,
         initial_sway,
         initial_rotation_rad,
         initial_rate_rad_s,
@@ -414,7 +423,10 @@ def simulate(
         mortar_modulus_gpa,
         mortar_thickness_m,
         damping_time_s,
+        damping_ratio,
+        damping_frequency_hz,
         compressive_strength_mpa,
+        contact,
         contact_points,
         duration_s,
         output_step_s,

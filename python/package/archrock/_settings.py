@@ -24,6 +24,7 @@ class Settings(NamedTuple):
     model: str = "four_links"
     impact: str = "max_restitution"
     restitution: float | None = None
+    restitution_factor: float | None = None
     initial_sway: str | None = None
     initial_rotation_rad: float | None = None
     initial_rate_rad_s: float | None = None
@@ -38,7 +39,10 @@ class Settings(NamedTuple):
     mortar_modulus_gpa: float | None = None
     mortar_thickness_m: float | None = None
     damping_time_s: float | None = None
+    damping_ratio: float | None = None
+    damping_frequency_hz: float | None = None
     compressive_strength_mpa: float | None = None
+    contact: str | None = None
     contact_points: int | None = None
     duration_s: float | None = None
     output_step_s: float = 0.005
@@ -60,8 +64,9 @@ class Settings(NamedTuple):
                 "direction": self.direction,
             }
         }
-        if self.impact != "max_restitution" or self.restitution is not None:
-            tables["impact"] = _given(model=self.impact, restitution=self.restitution)
+        impact = _given(restitution=self.restitution, restitution_factor=self.restitution_factor)
+        if self.impact != "max_restitution" or impact:
+            tables["impact"] = {"model": self.impact, **impact}
         initial = _given(
             sway=self.initial_sway,
             rotation_rad=self.initial_rotation_rad,
@@ -83,7 +88,10 @@ class Settings(NamedTuple):
             mortar_modulus_gpa=self.mortar_modulus_gpa,
             mortar_thickness_m=self.mortar_thickness_m,
             damping_time_s=self.damping_time_s,
+            damping_ratio=self.damping_ratio,
+            damping_frequency_hz=self.damping_frequency_hz,
             compressive_strength_mpa=self.compressive_strength_mpa,
+            contact=self.contact,
             contact_points=self.contact_points,
         )
         model = long_name(self.model)
@@ -93,12 +101,12 @@ class Settings(NamedTuple):
                 raise ValueError(f"{_names(given)}: of {other.replace('_', ' ')} only; give model=\"{other}\", or leave it out")
         if model == "elastic_joints":
             if "impact" in tables:
-                raise ValueError("`impact` and `restitution` go with four links: elastic joints have no impacts")
+                raise ValueError("`impact`, `restitution` and `restitution_factor` go with four links: elastic joints have no impacts")
             tables["elastic_joints"] = {**of_blocks, **elastic_joints}
         elif model == "free_hinges":
             if "impact" in tables:
                 raise ValueError(
-                    "`impact` and `restitution` go with four links: with free hinges impacts follow from the blocks"
+                    "`impact`, `restitution` and `restitution_factor` go with four links: with free hinges impacts follow from the blocks"
                 )
             tables["free_hinges"] = {**of_blocks, **free_hinges}
         elif of_blocks:

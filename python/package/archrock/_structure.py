@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar
 
 from ._described import Described, read_file
 from ._hinge import ChainLink, Limit
@@ -16,6 +16,9 @@ from ._tables import Tables, arguments, plain_table, to_toml
 from ._warnings import warn
 
 _MOST_BASES = 64
+
+Self = TypeVar("Self", bound="Structure")
+OneTable = TypeVar("OneTable", bound="_OneTable")
 
 Model = Literal["four", "four_links", "free", "free_hinges", "elastic", "elastic_joints"]
 
@@ -83,6 +86,14 @@ class Structure(Described):
         self._bases[key] = base
         return base
 
+    def replace(self: Self, **tables: Any) -> Self:
+        """The same structure with other tables; ``None`` leaves a table out.
+
+        Raises:
+            ValueError: as for a new structure.
+        """
+        return self._restored(plain_table({**self._tables, **tables}), self._files)
+
     def limit(self) -> Limit:
         """The ground acceleration that starts it to either side, by limit analysis, as ``archrock limit``.
 
@@ -111,7 +122,37 @@ class Structure(Described):
         return f"{type(self).__name__}({arguments(self._tables)})"
 
 
-class Arch(Structure):
+class _OneTable(Structure):
+    """A structure whose keys are those of one table. They are attributes too."""
+
+    __slots__ = ()
+
+    _table: ClassVar[str]
+
+    if not TYPE_CHECKING:
+        # Hidden from type checkers, which then find misspelt names.
+        def __getattr__(self, name: str) -> Any:
+            table = {} if name.startswith("_") else self._tables[self._table]
+            if name in table:
+                return table[name]
+            given = f"; it was given by: {', '.join(table)}" if table else ""
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}{given}")
+
+    def replace(self: OneTable, **keys: Any) -> OneTable:
+        """The same structure with other values of these keys; ``None`` leaves a key out.
+
+        >>> arch = Arch(mean_radius_m=5.0, thickness_ratio=0.15, embrace_deg=180.0)
+        >>> arch.replace(thickness_ratio=None, thickness_m=0.8).thickness_m
+        0.8
+
+        Raises:
+            ValueError: as for a new structure.
+        """
+        own = {**self._tables[self._table], **keys}
+        return self._restored(plain_table({**self._tables, self._table: own}), self._files)
+
+
+class Arch(_OneTable):
     """A circular masonry arch of constant thickness.
 
     Args:
@@ -130,9 +171,24 @@ class Arch(Structure):
     >>> arch = Arch(mean_radius_m=5.0, thickness_ratio=0.15, embrace_deg=180.0)
     >>> round(arch.limit().right.acceleration_g, 8)
     0.14432644
+    >>> arch.thickness_ratio
+    0.15
     """
 
     __slots__ = ()
+    _table: ClassVar[str] = "arch"
+
+    mean_radius_m: float
+    thickness_ratio: float
+    thickness_m: float
+    span_m: float
+    rise_m: float
+    embrace_deg: float
+    measured_at: str
+    voussoirs: int
+    joints_deg: list[float]
+    depth_m: float
+    density_kg_m3: float
 
     def __init__(
         self,
@@ -162,7 +218,7 @@ class Arch(Structure):
         return f"{type(self).__name__}({arguments(self._tables['arch'])})"
 
 
-class Column(Structure):
+class Column(_OneTable):
     """A free-standing column: Housner's block, or a stack of drums.
 
     Args:
@@ -187,6 +243,17 @@ class Column(Structure):
     """
 
     __slots__ = ()
+    _table: ClassVar[str] = "column"
+
+    height_m: float
+    width_m: float
+    drums: int
+    drum_heights_m: list[float]
+    top_width_m: float
+    pedestal: bool
+    depth_m: float
+    density_kg_m3: float
+    back: dict[str, Any]
 
     def __init__(
         self,

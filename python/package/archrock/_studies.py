@@ -20,13 +20,34 @@ from ._history import _axes
 from ._samples import Held, Samples
 from ._scenario import Scenario
 from ._structure import Structure
-from ._summary import Summarised, Summary
+from ._summary import Summarised, Summary, Untyped
 from ._warnings import warn
 
 if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas
     from matplotlib.axes import Axes
+
+    from ._keys import (
+        CapacityResult,
+        EnsembleUncertainMapResult,
+        EnsembleUncertainRunResult,
+        EnsembleUncertainSuiteResult,
+        EnsembleUncertainThresholdResult,
+        MapResult,
+        SuiteResult,
+        ThresholdAlongResult,
+        ThresholdModelsKeys,
+        ThresholdResult,
+        VerifyResult,
+    )
+
+    class _ThresholdKeys(ThresholdModelsKeys, ThresholdResult):
+        pass
+
+else:
+    CapacityResult = EnsembleUncertainMapResult = EnsembleUncertainRunResult = EnsembleUncertainSuiteResult = EnsembleUncertainThresholdResult = Untyped
+    MapResult = SuiteResult = ThresholdAlongResult = VerifyResult = _ThresholdKeys = Untyped
 
 Progress = Callable[[int, int], object]
 """Called with the number of cases done and of all cases; an exception that it raises ends the work."""
@@ -52,7 +73,7 @@ def span(
 class Files(Summarised):
     """Files as the program writes them, held in memory. The keys of :attr:`summary` are attributes too."""
 
-    __slots__ = ("_files", "_origin", "_texts")
+    __slots__ = ("_answer", "_files", "_origin", "_texts")
 
     _json: str
 
@@ -61,7 +82,9 @@ class Files(Summarised):
         files: Iterable[tuple[str, bytes]],
         origin: str,
         texts: Iterable[tuple[str, Sequence[str]]] = (),
+        answer: str = "",
     ) -> None:
+        self._answer = answer
         self._files = tuple((name, bytes(contents)) for name, contents in files)
         self._origin = origin
         self._texts = {name: frozenset(columns) for name, columns in texts}
@@ -100,10 +123,14 @@ class Files(Summarised):
 
     def __reduce__(self) -> tuple[Any, ...]:
         texts = tuple((name, tuple(columns)) for name, columns in self._texts.items())
-        return type(self), (self._files, self._origin, texts)
+        return type(self), (self._files, self._origin, texts, self._answer)
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__}: {', '.join(self.files)}>"
+        return f"<{type(self).__name__}: {self._answer.partition(chr(10))[0]}>"
+
+    def __str__(self) -> str:
+        """The answer with its conditions and main numbers, as the program prints it."""
+        return f"{type(self).__name__}:\n  {self._answer}"
 
 
 class Results(Files):
@@ -205,7 +232,7 @@ _OUTCOMES = {
 """Colours of outcomes; those of ``map.svg``, where overturned cells are divided by their number of impacts."""
 
 
-class OverturningMap(_Plane):
+class OverturningMap(MapResult, _Plane):
     """An overturning map: a history for every cell of a plane of two quantities."""
 
     __slots__ = ()
@@ -257,7 +284,7 @@ class OverturningMap(_Plane):
         return ax
 
 
-class ThresholdAlong(Results):
+class ThresholdAlong(ThresholdAlongResult, Results):
     """The least factor that overturns a structure, for each value of a key."""
 
     __slots__ = ()
@@ -292,7 +319,7 @@ class ThresholdAlong(Results):
         return ax
 
 
-class Suite(Results):
+class Suite(SuiteResult, Results):
     """A suite of records, and the fragility curve of its cases."""
 
     __slots__ = ()
@@ -346,7 +373,7 @@ class Suite(Results):
         return ax
 
 
-class Threshold(Results):
+class Threshold(_ThresholdKeys, Results):
     """Factors on a ground motion that overturn a structure: bands, safe gaps between them, and uncertain ranges.
 
     The keys of the first of ``models`` in ``threshold.json`` are attributes: ``lowest_factor``, ``None`` if no factor overturns, and the lists
@@ -386,7 +413,7 @@ class Threshold(Results):
             rows = table["direction"] == direction
             if rows.any():
                 ax.plot(table["factor"][rows], peak[rows], style, color="k", label=f"largest rotation{which}")
-        looks: tuple[tuple[list[dict[str, Any]], str, str, str | None], ...] = (
+        looks: tuple[tuple[Sequence[Mapping[str, Any]], str, str, str | None], ...] = (
             (self.bands, "overturns", "C3", None),
             (self.uncertain, "uncertain", "C2", "//"),
             (mirrored.get("bands", []), "overturns, mirrored", "C1", None),
@@ -403,7 +430,7 @@ class Threshold(Results):
         return ax
 
 
-class Capacity(Results):
+class Capacity(CapacityResult, Results):
     """The quasi-static capacity of the first mechanism to both sides: acceleration against displacement."""
 
     __slots__ = ()
@@ -468,7 +495,7 @@ class Ensemble(Results):
         return np.column_stack([self._samples(key) for key in self.keys])
 
 
-class Histories(Ensemble):
+class Histories(EnsembleUncertainRunResult, Ensemble):
     """An ensemble of histories."""
 
     __slots__ = ()
@@ -498,7 +525,7 @@ class Histories(Ensemble):
         return self.columns("bands.csv")
 
 
-class FirstFactors(Ensemble):
+class FirstFactors(EnsembleUncertainThresholdResult, Ensemble):
     """An ensemble of the first factors on the ground motion that overturn.
 
     ``to_quote`` has the answer that may be quoted, and ``lower_limit_factor`` its factor: the lower 95 % confidence limit of the factor that
@@ -520,7 +547,7 @@ class FirstFactors(Ensemble):
         return self.columns("probability.csv")
 
 
-class Fragilities(Ensemble):
+class Fragilities(EnsembleUncertainSuiteResult, Ensemble):
     """An ensemble of the intensities from which the records of a suite overturn.
 
     ``fragility`` has median and dispersion with their intervals: ``record_to_record``, ``uncertain_data`` and ``both``. ``to_quote``
@@ -532,7 +559,7 @@ class Fragilities(Ensemble):
     _picture = "fragility.svg"
 
 
-class ProbabilityMap(_Plane):
+class ProbabilityMap(EnsembleUncertainMapResult, _Plane):
     """The probability that each cell of a map overturns, estimated from samples of the uncertain numbers."""
 
     __slots__ = ()
@@ -570,7 +597,7 @@ class ProbabilityMap(_Plane):
         return ax
 
 
-class Check(Files):
+class Check(VerifyResult, Files):
     """A check by the Circolare 7/2019: its numbers, and the page to be filed.
 
     ``zeta_e`` is the ratio of capacity to demand, the least of all limit states checked; ``verdict`` has ``passed``, ``not_passed``,
@@ -595,7 +622,7 @@ class Check(Files):
 _StudyResults = Union[OverturningMap, ProbabilityMap, ThresholdAlong, Suite, Ensemble]
 _TextColumns = Iterable[tuple[str, Sequence[str]]]
 _KINDS: dict[
-    str, Callable[[Iterable[tuple[str, bytes]], str, _TextColumns], _StudyResults]
+    str, Callable[[Iterable[tuple[str, bytes]], str, _TextColumns, str], _StudyResults]
 ] = {
     "map": OverturningMap,
     "threshold_along": ThresholdAlong,
@@ -629,8 +656,8 @@ def _study(
     progress: Progress | None = None,
     factors: tuple[float | None, float | None, float] | None = None,
     along: tuple[str, bool] | None = None,
-) -> tuple[list[tuple[str, bytes]], str, list[tuple[str, list[str]]]]:
-    """The files of a study, their origin for the list of a folder, and the columns with text of each table."""
+) -> tuple[list[tuple[str, bytes]], str, list[tuple[str, list[str]]], str]:
+    """The files of a study, their origin for the list of a folder, the columns with text of each table, and the answer in words."""
     if progress is not None and not callable(progress):
         raise TypeError("`progress` must be a function of two numbers")
     return _native.study(scenario._native, kind, factors, along, _allowed(threads), progress)
@@ -1067,5 +1094,5 @@ def merge(
     if not isinstance(scenario, (Scenario, type(None))):
         raise TypeError(f"`scenario` must be a Scenario, not {type(scenario).__name__}")
     native = None if scenario is None else scenario._native
-    study, files, origin, texts = _native.merge(list(parts), native)
-    return _warned(_KINDS[study](files, origin, texts))
+    study, files, origin, texts, answer = _native.merge(list(parts), native)
+    return _warned(_KINDS[study](files, origin, texts, answer))

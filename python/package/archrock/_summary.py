@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from typing import Any, ClassVar, NoReturn
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
 
 from ._tables import arguments
 
@@ -23,12 +23,14 @@ class Summary(dict[str, Any]):
         summary: Summary = json.loads(text, object_hook=cls)
         return summary
 
-    def __getattr__(self, name: str) -> Any:
-        try:
-            return self[name]
-        except KeyError:
-            kind, keys = type(self).__name__, ", ".join(self)
-            raise AttributeError(f"this {kind} has no key {name!r}; its keys are: {keys}") from None
+    if not TYPE_CHECKING:
+        # Type checkers know the keys from `_keys.pyi`, and find misspelt ones.
+        def __getattr__(self, name: str) -> Any:
+            try:
+                return self[name]
+            except KeyError:
+                kind, keys = type(self).__name__, ", ".join(self)
+                raise AttributeError(f"this {kind} has no key {name!r}; its keys are: {keys}") from None
 
     def __dir__(self) -> Iterable[str]:
         return [*super().__dir__(), *self]
@@ -40,6 +42,12 @@ class Summary(dict[str, Any]):
         """A copy that consists of plain dictionaries and lists."""
         copy: dict[str, Any] = json.loads(json.dumps(self))
         return copy
+
+
+class Untyped:
+    """The base of results in place of the classes of ``_keys.pyi``, which type checkers alone read."""
+
+    __slots__ = ()
 
 
 class Part(Summary):
@@ -88,13 +96,18 @@ class Summarised:
         """The summary, or the part of it whose keys are attributes."""
         raise NotImplementedError
 
-    def __getattr__(self, name: str) -> Any:
+    def _attribute(self, name: str) -> Any:
         # No key begins with an underscore, and an object that is being restored has no attributes yet.
         if not name.startswith("_"):
             numbers = self._numbers()
             if name in numbers:
                 return numbers[name]
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            return self._attribute(name)
 
     def __dir__(self) -> Iterable[str]:
         return [*super().__dir__(), *self._numbers()]

@@ -14,16 +14,24 @@ _NUMBER = re.compile(r"(?<![\w.-])-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?(?![\w.-]*\w)"
 class ArchrockWarning(UserWarning):
     """An input is unlikely, or a result is of limited reliability.
 
-    The text has ``...`` in place of its numbers, so Python shows a warning of one kind once in a loop over many arches. ``details`` is the
-    whole sentence, and ``numbers`` are its numbers. Results keep the sentences as ``summary["warnings"]``.
+    Python shows a warning of one kind once in a loop over many arches, with the numbers of the first. ``numbers`` are the numbers of the
+    sentence ``details``. Results keep the sentences as ``summary["warnings"]``.
 
     ``warnings.simplefilter("ignore", ArchrockWarning)`` silences these warnings, ``"error"`` turns them into exceptions.
     """
 
     def __init__(self, details: str = "") -> None:
-        super().__init__(_NUMBER.sub("...", details))
+        super().__init__(details)
         self.details = details
         self.numbers = tuple(map(float, _NUMBER.findall(details)))
+        self._is_compared = False
+
+    def __str__(self) -> str:
+        # Python compares the texts of warnings, and prints by `format`.
+        return _NUMBER.sub("...", self.details) if self._is_compared else self.details
+
+    def __format__(self, format_spec: str) -> str:
+        return format(self.details, format_spec)
 
 
 def warn(texts: Iterable[str]) -> None:
@@ -32,4 +40,9 @@ def warn(texts: Iterable[str]) -> None:
         level, frame = 1, sys._getframe()
         while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
             level, frame = level + 1, frame.f_back
-        warnings.warn(ArchrockWarning(text), stacklevel=level)
+        warning = ArchrockWarning(text)
+        warning._is_compared = True
+        try:
+            warnings.warn(warning, stacklevel=level)
+        finally:
+            warning._is_compared = False
