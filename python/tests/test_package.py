@@ -21,7 +21,8 @@ def test_the_first_example_of_a_page_runs_as_printed(page: str, tmp_path: Path) 
     ran = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stderr
     printed = ran.stdout.splitlines()
-    comments = [line.partition("# ")[2] for line in code.splitlines() if line.startswith("print(")]
+    said_there = [line for line in code.splitlines() if line.startswith(("print(", "# "))]
+    comments = [comment for comment in (line.partition("# ")[2] for line in said_there) if comment]
     assert comments and len(printed) == len(comments)
     for said, comment in zip(printed, comments):
         assert said.startswith(comment.partition("...")[0]), (said, comment)
