@@ -30,6 +30,8 @@ pub(crate) const TIE: Stroke = Stroke::new(color::ORANGE, 1.8, "");
 const BUILT: Stroke = Stroke::new(color::GREY, 0.7, "3 3");
 /// Stroke and radius of the circle at an open hinge.
 pub(crate) const HINGE: Stroke = Stroke::new(color::VERMILION, 1.6, "");
+/// Stroke of hinges of a second mechanism, that to the left.
+const HINGE_TO_THE_LEFT: Stroke = Stroke::new("#6a3d9a", 1.6, "");
 pub(crate) const HINGE_PX: f64 = 3.2;
 const LOAD: Stroke = Stroke::new("#7a3b00", 1.6, "");
 /// Stroke of the axes of the frame of reference.
@@ -119,7 +121,12 @@ pub(crate) fn draw_hinges(
         joint_numbers(drawing, &view.place, scene);
         draw_axes(drawing, &view.place, scene);
         for (index, (sway, at_m)) in hinges_m.iter().enumerate() {
-            drawing.circle("hinge", place.px(*at_m), 6.0 + sway.sign(), HINGE);
+            // Size and colour differ, for prints in grey.
+            let line = match sway {
+                Sway::Right => HINGE,
+                Sway::Left => HINGE_TO_THE_LEFT,
+            };
+            drawing.circle("hinge", place.px(*at_m), 6.0 + sway.sign(), line);
             if let Some(spot) = spots.get(index) {
                 drawing.symbol(place.px(*at_m), &spot.symbol());
             }

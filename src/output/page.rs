@@ -95,6 +95,16 @@ impl Spot {
         Mark::symbol(self.symbol(), at)
     }
 
+    /// Returns a bar of this height in a strip of outcomes, for a case without a place on a curve.
+    pub(crate) fn bar(&self, at: (f64, f64), height_px: f64) -> Mark {
+        let half_px = 0.5 * height_px;
+        let mut symbol = self.symbol();
+        symbol.attributes = symbol.attributes.replacen("spot ", "spot bar ", 1);
+        let fill = self.kind.fill();
+        symbol.shapes = format!("<path fill=\"{fill}\" d=\"M-1-{half_px}H1V{half_px}H-1Z\"/>");
+        Mark::symbol(symbol, at)
+    }
+
     /// Returns its symbol.
     pub(crate) fn symbol(&self) -> Symbol {
         let outside = match self.outside {

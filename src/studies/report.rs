@@ -150,23 +150,25 @@ impl Statement {
             false => verdict().collect(),
         };
         lines.extend(quote.into_iter().flat_map(thoughts));
-        // The answer and its conditions contain some of the other thoughts.
         let said = [quote, Some(&*self.verdict).filter(|_| !has_answer)];
-        let is_said = |thought: &&str| {
-            let need = thought.strip_prefix("needs ").unwrap_or(thought);
-            said.iter().flatten().any(|said| said.contains(need))
-        };
+        let said: String = said.into_iter().flatten().collect();
         let numbers = self.numbers.iter().filter(|_| has_numbers);
         for words in self.limits.iter().chain(numbers) {
-            let new = words.split(THOUGHT_END).filter(|one| !is_said(one));
-            lines.extend(in_lines(new.collect::<Vec<_>>()));
+            lines.extend(in_lines(new_thoughts(words, &said)));
         }
         lines.join("\n  ")
     }
 
-    /// Returns all warnings.
+    /// Returns the warnings, without the thoughts of the answer.
     pub(super) fn warnings(&self) -> Vec<String> {
-        [&*self.unlikely, &*self.limits].concat()
+        let said = self.quote.as_deref().unwrap_or_default();
+        let all = self.unlikely.iter().chain(&self.limits);
+        let new = all.map(|words| {
+            new_thoughts(words, said)
+                .collect::<Vec<_>>()
+                .join(THOUGHT_END)
+        });
+        new.filter(|words| !words.is_empty()).collect()
     }
 
     /// Returns the details without their indent.
@@ -189,6 +191,13 @@ impl Statement {
         let lines: String = lines.map(|line| format!("\n{line}")).collect();
         format!("{verdict}{lines}")
     }
+}
+
+/// Returns the thoughts of some words that others do not contain. Friction is a need among the limits, and a condition in an answer.
+fn new_thoughts<'w>(words: &'w str, said: &str) -> impl Iterator<Item = &'w str> {
+    words
+        .split(THOUGHT_END)
+        .filter(move |thought| !said.contains(thought.strip_prefix("needs ").unwrap_or(thought)))
 }
 
 /// Writes thoughts in lines: several short ones on a line, and a long one on several.

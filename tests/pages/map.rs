@@ -280,9 +280,10 @@ data.rows.forEach((row, index) => {
   verify(text.includes(`pulse amplitude (g) ${Number(Number(row[1]).toPrecision(6))}`), `${text} ${row}`);
   const words = { never_moved: 'never moves', rest: 'comes to rest', overturned: 'overturns' }[row[2]];
   verify(text.includes(words), `${text} ${row}`);
-  verify(text.includes(`impacts ${Number(row[4])}`), `${text} ${row}`);
+  verify(text.includes(Number(row[4]) === 1 ? ', 1 impact,' : `, ${Number(row[4])} impacts,`), `${text} ${row}`);
   verify(text.includes('outside the model') === Number(row[9]) > data.limit, `${text} ${row}`);
-  verify(text.includes(`outcome time (s) ${Number(Number(row[6]).toPrecision(5))}`), `${text} ${row}`);
+  verify(text.includes(`ends at ${Number(Number(row[6]).toPrecision(4))} s`), `${text} ${row}`);
+  verify(!text.includes('_') && !text.includes('energy defect'), text);
   const command = document.getElementById('command').textContent;
   verify(command.includes(`duration_s=${Number(row[0])} `), `${command} ${row}`);
   verify(command.includes(`amplitude_g=${Number(row[1])} `), `${command} ${row}`);
@@ -313,4 +314,54 @@ verify(archrock.chosen().join() === '0,2', 'stays');
         &[],
         150,
     );
+}
+
+/// Negative amplitudes push to the right. The strongest is on top as among positive ones, and hatching falls to the right everywhere.
+#[test]
+fn the_strongest_pulse_is_on_top_whatever_its_sign() {
+    let folder = tempfile::tempdir().unwrap();
+    for (amplitudes, label) in [
+        ("[0.2, 0.6, 2.0]", "pulse amplitude (g)"),
+        ("[-2.0, -0.6, -0.2]", "minus pulse amplitude (g)"),
+        ("[-2.0, 0.2, 0.6]", "pulse amplitude (g)"),
+    ] {
+        let axes = format!("duration_s = [0.3, 0.8]\namplitude_g = {amplitudes}\n");
+        let (page, rows) = map(folder.path(), &axes, &[]);
+        let data = data_of(&page);
+        let edges: Vec<f64> =
+            serde_json::from_value(data["sheets"][0]["edges_px"][1].clone()).unwrap();
+        let values: Vec<f64> = serde_json::from_value(data["axes"][1]["values"].clone()).unwrap();
+        assert_eq!(edges.len(), values.len() + 1);
+        // Pixels count from the top.
+        let height = |index: usize| 0.5 * (edges[index] + edges[index + 1]);
+        let is_mixed = amplitudes.contains(", 0.2");
+        for pair in [[0, 1], [1, 2]] {
+            let [one, other] = pair.map(|index| match is_mixed {
+                true => values[index],
+                false => values[index].abs(),
+            });
+            assert_eq!(
+                one < other,
+                height(pair[0]) > height(pair[1]),
+                "{amplitudes}"
+            );
+        }
+        assert!(page.contains(&format!(">{label}<")), "{label}");
+        assert_eq!(rows.len(), 6);
+        let svg = fs::read_to_string(folder.path().join("map.svg")).unwrap();
+        let drawing = roxmltree::Document::parse(&svg).unwrap();
+        let hatching = drawing
+            .descendants()
+            .find(|node| node.attribute("data-name") == Some("outside-model"));
+        let path = hatching.and_then(|node| node.attribute("d")).unwrap();
+        let mut lines = path.split('M').skip(1).map(|line| {
+            let numbers = line.split(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-'));
+            let numbers: Vec<f64> = numbers.filter_map(|word| word.parse().ok()).collect();
+            [numbers[0], numbers[1], numbers[2], numbers[3]]
+        });
+        assert!(
+            lines.all(|[x, y, to_x, to_y]| (to_x - x) * (to_y - y) > 0.0),
+            "{path}"
+        );
+    }
 }

@@ -13,8 +13,30 @@ function buffer(text) {
 }
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const farthest = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
-/** The name of a column in words, with its unit. */
-const inWords = (column) => column.replace(/_(s|rad|deg|m|mm|g|hz|n|j|mpa)$/, " ($1)").replaceAll("_", " ");
+/** Phrases about the numbers of a case, by column; empty for those that its heading has, or that concern the computation. */
+const PHRASES = {
+  model: "",
+  outcome: "",
+  factor: "",
+  energy_defect_ratio: "",
+  overturning_sway: "to the #",
+  outcome_time_s: "ends at # s",
+  impacts: "# impacts",
+  peak_rotation_rad: "largest rotation # rad",
+  peak_rotation_over_critical: "largest rotation # times that of overturning",
+  peak_potential_over_barrier: "largest energy # times that of overturning",
+  thrust_excess_ratio: "thrust line up to # thicknesses outside",
+  friction_demand: "needs a friction coefficient of #",
+};
+/** A cell of a column in words, with its unit and four digits; empty if it says nothing about the case. */
+function inWords(column, cell) {
+  if (cell === "as_given") return "";
+  const number = Number(cell);
+  const shown = Number.isFinite(number) ? String(Number(number.toPrecision(4))) : String(cell).replaceAll("_", " ");
+  const unit = column.match(/_(s|rad|deg|m|mm|g|hz|n|j|mpa)$/)?.[1] ?? "";
+  const name = column.slice(0, column.length - (unit ? unit.length + 1 : 0)).replaceAll("_", " ");
+  return (PHRASES[column] ?? `${name} # ${unit}`.trim()).replace("#", shown).replace(/^1 impacts$/, "1 impact");
+}
 
 /** Copies the command of a page. */
 async function copyCommand() {

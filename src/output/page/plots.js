@@ -45,6 +45,8 @@ function createPlots(parent, { start, end }, seek) {
         height: tall,
         title: label,
         legend: { show: false },
+        // Points between pixels keep their place, or slow curves become stairs.
+        pxAlign: 0,
         scales: { x: { time: false } },
         cursor: { sync: { key: "archrock" }, drag: { x: true, y: false } },
         axes: [

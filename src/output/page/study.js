@@ -19,10 +19,15 @@
     chosen = row;
     for (const spot of spots) spot.classList.toggle("chosen", Number(spot.dataset.row) === row);
     cells.forEach((line, index) => line.classList.toggle("chosen", index === row));
-    const words = spots.find((spot) => Number(spot.dataset.row) === row)?.querySelector("title").textContent ?? "";
+    const spot = spots.find((spot) => Number(spot.dataset.row) === row);
+    const words = spot?.querySelector("title").textContent ?? "";
     const known = cells[row] ? [...cells[row].cells].map((cell, i) => [names[i], cell.textContent]) : [];
     find("case").textContent = words;
-    find("numbers").textContent = known.filter(([, cell]) => cell).map(([name, cell]) => `${inWords(name)} ${cell}`).join(", ");
+    find("case").className = ["overturns", "uncertain"].find((kind) => spot?.classList.contains(kind)) ?? "";
+    find("numbers").textContent = known.map(([name, cell]) => cell && inWords(name, cell)).filter(Boolean).join(", ");
+    const line = cells[row];
+    const rows = line?.closest(".scroll");
+    if (rows) rows.scrollTop = line.offsetTop - rows.clientHeight / 3;
     find("command").textContent = command(row);
     find("copy").textContent = "Copy";
   }

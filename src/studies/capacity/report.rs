@@ -176,6 +176,17 @@ impl Report for CapacitySummary {
 
 const STATIC: &str = "the first mechanism, held at each displacement without inertia and without slip; the hinges stay where they open";
 
+/// True if the curves to both sides have equal points within rounding, as for a symmetric structure.
+fn are_alike(right: &[CurvePoint], left: &[CurvePoint]) -> bool {
+    let is_near = |one: f64, other: f64| (one - other).abs() <= 1e-9 * one.abs().max(1e-3);
+    let mut pairs = right.iter().zip(left);
+    right.len() == left.len()
+        && pairs.all(|(one, other)| {
+            is_near(one.displacement_m, other.displacement_m)
+                && is_near(one.acceleration_g, other.acceleration_g)
+        })
+}
+
 /// Points of the curves, to the right first.
 fn points(sides: &Sides<Option<Capacity>>) -> impl Iterator<Item = (Sway, &CurvePoint)> {
     sides.iter().flat_map(|(sway, side)| {
@@ -187,18 +198,20 @@ fn points(sides: &Sides<Option<Capacity>>) -> impl Iterator<Item = (Sway, &Curve
 /// Makes the chart of acceleration against displacement of the control point, for both sides, with marks for their points on a
 /// page.
 fn chart(sides: &Sides<Option<Capacity>>, figure: Figure, spots: &[Spot]) -> Chart {
-    let curves = sides
-        .iter()
-        .zip(CURVES)
-        .filter_map(|((sway, side), stroke)| {
-            let points = side
-                .as_ref()?
-                .curve
-                .iter()
-                .map(|point| (point.displacement_m, point.acceleration_g));
-            let name = format!("to the {}", sway.name());
-            Some(Mark::curve(name, stroke, points))
-        });
+    let [right, left] = [&sides.right, &sides.left].map(Option::as_ref);
+    let is_one = right
+        .zip(left)
+        .is_some_and(|(right, left)| are_alike(&right.curve, &left.curve));
+    let shown = sides.iter().zip(CURVES).take(if is_one { 1 } else { 2 });
+    let curves = shown.filter_map(|((sway, side), stroke)| {
+        let curve = side.as_ref()?.curve.iter();
+        let points = curve.map(|point| (point.displacement_m, point.acceleration_g));
+        let name = match is_one {
+            true => "to either side".to_owned(),
+            false => format!("to the {}", sway.name()),
+        };
+        Some(Mark::curve(name, stroke, points))
+    });
     let labels = ["displacement of the control point (m)", "a (g)"];
     let mut chart = Chart::around(figure, 330.0, labels, curves.collect());
     let marks = points(sides)

@@ -13,8 +13,8 @@ use crate::{Scenario, Sway};
 /// Names of the files, the seal last.
 pub const FILES: [&str; 3] = ["limit.html", "limit.svg", "limit.json"];
 
-const HINGES: &str = "circles: hinges that a push opens, large ones to the right, small ones to the left; blue arrow: positive ground \
-                      acceleration, which pushes to the left";
+const HINGES: &str = "circles: hinges that a push opens, to the right large and orange, to the left small and purple; blue arrow: positive \
+                      ground acceleration, which pushes to the left";
 const SLOWLY: &str = "the push grows slowly from zero; a short pulse may exceed it without overturning; joints slip only in results with a \
                       coefficient of friction";
 

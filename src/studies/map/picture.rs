@@ -45,6 +45,11 @@ fn color_of(cell: &CellRow, style: Style) -> OutcomeColor {
     OutcomeColor::of_result(&cell.result)
 }
 
+/// True for an axis of negative values.
+fn is_negative(axis: &Axis) -> bool {
+    axis.sequence.values().iter().all(|value| *value < 0.0)
+}
+
 /// Scale of an axis, and the edges of its cells halfway between the values. The values are multiplied by `factor`.
 fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
     let values: Vec<f64> = axis.sequence.values();
@@ -70,9 +75,15 @@ fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
         .chain([last + after])
         .map(from)
         .collect();
-    let (low, high) = (edges[0], edges[edges.len() - 1]);
+    // Negative values are drawn as positive ones, which then descend.
+    let ends = [edges[0], edges[edges.len() - 1]];
+    let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
     // Half a cell beyond the ends may contain invalid values.
-    let low = if values[0] >= 0.0 { low.max(0.0) } else { low };
+    let low = if values.iter().all(|value| *value >= 0.0) {
+        low.max(0.0)
+    } else {
+        low
+    };
     let high = match axis.quantity {
         Quantity::Embrace => high.min(180.0),
         Quantity::Restitution => high.min(1.0),
@@ -100,6 +111,8 @@ pub(crate) struct MapChart<'s> {
     title: &'s str,
     map: &'s OverturningMap<'s>,
     style: Style,
+    /// The values of the axes are drawn times these factors. Negative values become positive, so that the strongest pulse is on top.
+    factors: [f64; 2],
     scales: [Scale; 2],
     /// Edges of the columns and of the rows, in the units of the axes.
     edges: [Vec<f64>; 2],
@@ -109,11 +122,16 @@ impl<'s> MapChart<'s> {
     /// Makes the chart of a map, without cells.
     pub(crate) fn new(title: &'s str, map: &'s OverturningMap<'s>, style: Style) -> Self {
         let factors = style.factors.unwrap_or([1.0; 2]);
+        let factors = [0, 1].map(|i: usize| match is_negative(map.axes[i]) {
+            true => -factors[i],
+            false => factors[i],
+        });
         let [x, y] = [0, 1].map(|i: usize| scale(map.axes[i], factors[i], style.figure));
         Self {
             title,
             map,
             style,
+            factors,
             scales: [x.0, y.0],
             edges: [x.1, y.1],
         }
@@ -121,8 +139,7 @@ impl<'s> MapChart<'s> {
 
     /// Point of the map in the units of the axes, which may be dimensionless.
     pub(crate) fn point(&self, x: f64, y: f64) -> (f64, f64) {
-        let factors = self.style.factors.unwrap_or([1.0; 2]);
-        (factors[0] * x, factors[1] * y)
+        (self.factors[0] * x, self.factors[1] * y)
     }
 
     /// Diagonal in each chosen cell; `ends` are 0 at its lower edge and 1 at its upper edge.
@@ -132,7 +149,9 @@ impl<'s> MapChart<'s> {
         let chosen = (0..).zip(cells).filter(|(_, chosen)| **chosen);
         let diagonals = chosen.flat_map(|(index, _): (usize, _)| {
             let [column, row] = [index / count, index % count];
-            let at = |side: usize| (x_edges[column + side], y_edges[row + ends[side]]);
+            let [one, other] = [y_edges[row], y_edges[row + 1]];
+            let y = [one.min(other), one.max(other)];
+            let at = |side: usize| (x_edges[column + side], y[ends[side]]);
             [at(0), at(1), (f64::NAN, f64::NAN)]
         });
         Mark::curve(name, line, diagonals)
@@ -164,13 +183,22 @@ impl<'s> MapChart<'s> {
             style,
             scales: [x, y],
             ref edges,
+            ..
         } = self;
         let figure = style.figure;
         let [x_label, y_label] = match style.factors {
             Some(_) => ["p t_p", "a / A_L"],
             None => map.axes.map(label),
         };
-        let mut chart = Chart::new(560.0, (x_label, x), (y_label, y));
+        let [x_label, y_label] = [(x_label, 0), (y_label, 1)].map(|(label, i): (&str, usize)| {
+            let sign = if is_negative(map.axes[i]) {
+                "minus "
+            } else {
+                ""
+            };
+            format!("{sign}{label}")
+        });
+        let mut chart = Chart::new(560.0, (&x_label, x), (&y_label, y));
         // The stroke closes gaps between cells.
         let fills = palette.iter().map(|color| {
             let cells = runs(edges, colors).filter(|(own, _)| own == color);

@@ -81,7 +81,7 @@ pub(super) fn draw_marked(
         for (sample, spot) in threshold.samples.iter().zip(&mut spots) {
             match peak(sample) {
                 Some(peak) => on_curves.push(spot.mark((sample.factor, peak))),
-                None => on_strip.push(spot.mark((sample.factor, 0.5))),
+                None => on_strip.push(spot.bar((sample.factor, 0.5), STRIP)),
             }
         }
         sheet.gap(EDGE_LABELS);

@@ -37,7 +37,8 @@
     const numbers = columns
       .map(({ name, values }) => [name, values[index]])
       .filter(([, value]) => !Number.isNaN(value))
-      .map(([name, value]) => `${inWords(name)} ${Number(value.toPrecision(5))}`);
+      .map(([name, value]) => inWords(name, value))
+      .filter(Boolean);
     const place = data.axes.map(({ label }, i) => `${label} ${Number([xs[column], ys[line]][i].toPrecision(6))}`);
     const label = data.doubts[index] ? `uncertain: ${data.doubts[index]}` : data.labels[kinds[index]];
     const outside = data.outside.includes(index) ? ["outside the model of four links"] : [];
@@ -72,7 +73,9 @@
     stays = !(stays && cell[0] === chosen[0] && cell[1] === chosen[1]);
     show(cell);
   });
-  const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+  // Values that descend along the axis, as negative ones, have the last one below.
+  const up = data.sheets[0].edges_px[1][0] > data.sheets[0].edges_px[1].at(-1) ? 1 : -1;
+  const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, up], ArrowDown: [0, -up] };
   map.addEventListener("keydown", (event) => {
     const step = steps[event.key];
     if (!step) return;
