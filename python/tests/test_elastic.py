@@ -95,5 +95,5 @@ def test_the_answer_rests_on_other_stiffnesses_as_in_the_program(program: Progra
     assert variations == told["variations"] and len(variations) > 1
     once = simulate(STACK, PULSE, repeat=False, **joints)
     assert once == history
-    assert once.to_quote == "no answer with elastic joints: the run is not repeated yet"
+    assert once.to_quote == "no answer with elastic joints: the run is not repeated"
     assert once.variations == [] and pickle.loads(pickle.dumps(once)).to_quote == once.to_quote

@@ -112,7 +112,7 @@ fn read(input: &Input<'_>) -> Result<Scenario, Failure> {
     match input.read_statics() {
         Ok(scenario) if !scenario.gives_motion() => {
             super::warn(&[format!(
-                "the structure cannot be moved, only `limit`, `spread` and `capacity` can: {wrong}"
+                "only `limit`, `spread` and `capacity` work: {wrong}"
             )]);
             Ok(scenario)
         }

@@ -292,10 +292,34 @@ fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     print(&String::from_utf8_lossy(&script))
 }
 
+/// The usage of a command with the values of its options, which manual pages would leave out.
+fn usage(command: &clap::Command) -> String {
+    let mut usage = command.get_bin_name().unwrap_or_default().to_owned();
+    let shown = command.get_arguments().filter(|one| !one.is_hide_set());
+    let (others, options): (Vec<_>, Vec<_>) = shown.partition(|one| one.is_positional());
+    for option in options {
+        let repeats = matches!(option.get_action(), clap::ArgAction::Append);
+        let dots = if repeats { "..." } else { "" };
+        usage += &match option.is_required_set() {
+            true => format!(" {option}"),
+            false => format!(" [{option}]{dots}"),
+        };
+    }
+    others
+        .iter()
+        .fold(usage, |usage, other| usage + &format!(" {other}"))
+}
+
 /// Writes the manual pages of the program and of its commands into a folder.
 fn manual(folder: &Path) -> Result<(), Failure> {
-    let written = fs::create_dir_all(folder)
-        .and_then(|()| clap_mangen::generate_to(Arguments::command(), folder));
+    let mut program = Arguments::command().disable_help_subcommand(true);
+    program.build();
+    let program = program.mut_subcommands(|command| {
+        let usage = usage(&command);
+        command.override_usage(usage)
+    });
+    let written =
+        fs::create_dir_all(folder).and_then(|()| clap_mangen::generate_to(program, folder));
     written.map_err(|error| {
         let folder = folder.display();
         Failure::Work(format!("cannot write manual pages into {folder}: {error}"))

@@ -81,7 +81,7 @@ fn structure(structure: &Structure, varies: Varies<'_>) -> String {
             }
             if !varies("arch.voussoirs") {
                 let voussoirs = arch.voussoirs.map(|count| format!("{count} voussoirs"));
-                values.push(voussoirs.unwrap_or_else(|| "hinges anywhere".to_owned()));
+                values.push(voussoirs.unwrap_or_else(|| "no joints given".to_owned()));
             }
             format!("arch: {}", values.join(", "))
         }
@@ -182,6 +182,10 @@ fn model(scenario: &Scenario, varies: Varies<'_>) -> String {
             format!("{name}, restitution prescribed")
         }
         ImpactModel::Prescribed { restitution } => format!("{name}, restitution {restitution}"),
+        ImpactModel::MaxRestitution if !scenario.structure.has_horizontal_thrust() => {
+            name.to_owned()
+        }
+        ImpactModel::MaxRestitution => format!("{name}, largest restitution"),
         model => format!("{name}, impact {}", model.name().replace('_', " ")),
     }
 }

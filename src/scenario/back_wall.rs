@@ -5,8 +5,7 @@ use crate::argument::ArgumentError;
 use crate::{BackWall, Column, Sway};
 
 /// Message about a wall behind a row of rigid blocks.
-const NO_RIGID_BLOCKS: &str = "cannot be combined with free hinges: their impacts lose all energy of the contacts that close, so base and wall together \
-                               would stop the column; give [elastic_joints], or Housner's column, or leave [column.back] out";
+const NO_RIGID_BLOCKS: &str = "cannot be combined with free hinges: the wall would stop the column at the first impact; give [elastic_joints], or Housner's column, or leave [column.back] out";
 
 /// Reads `[column.back]`.
 pub(super) fn read(table: &mut Table<'_>) -> ReadResult<BackWall> {

@@ -109,6 +109,6 @@ pub(super) fn check_friction(structure: &Structure, coefficient: f64) -> Result<
     let least = friction::least_coefficient(model.row()).map_err(|error| error.to_string())?;
     let least = plain(rounded_up(least));
     Err(format!(
-        "does not carry the weight of the structure; must be at least {least}"
+        "lets the structure slide under its own weight; must be at least {least}"
     ))
 }

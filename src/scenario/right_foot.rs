@@ -62,7 +62,7 @@ impl RightFoot {
     ) -> ReadResult<()> {
         if !kind.has_joints {
             let wrong = format!(
-                "cannot be followed: {FEET_NEED_JOINTS}; choose free hinges or elastic joints, or leave it out"
+                "needs free hinges or elastic joints: {FEET_NEED_JOINTS}; choose one, or leave it out"
             );
             return Err(outer.reject_in(&["ground"], "right", wrong));
         }

@@ -716,7 +716,7 @@ fn a_run_reports_its_ties() {
         let all: Vec<&str> = arguments.iter().copied().chain(["--out", "none"]).collect();
         refused(folder.path(), &all, &[words]);
     };
-    let four = "four links take no ties";
+    let four = "four links cannot have ties";
     refuses(&["run", "s.toml", "--hinges", "four"], four);
     let words = printed(folder.path(), &["capacity", "s.toml", "--out", "curve"]);
     let reported = json(&folder.path().join("curve/capacity.json"));

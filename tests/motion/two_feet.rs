@@ -780,7 +780,7 @@ fn invalid_feet_are_refused() {
         refuses(
             &late,
             &["--hinges", hinges],
-            "s.toml:13:1: table `right` cannot be followed: four links assume that all hinges close at once",
+            "s.toml:13:1: table `right` needs free hinges or elastic joints: four links assume that all hinges close at once",
         );
     }
     refuses(

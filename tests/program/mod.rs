@@ -19,3 +19,4 @@ mod results_folder;
 mod robustness;
 mod run_input;
 mod summaries;
+mod worked;

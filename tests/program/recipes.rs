@@ -131,7 +131,7 @@ fn commands_print_the_output_shown_at_the_start() {
 
 #[test]
 fn commands_print_the_output_shown_in_the_questions() {
-    assert_page_is_true("docs/questions.md", 5);
+    assert_page_is_true("docs/questions.md", 6);
 }
 
 #[test]

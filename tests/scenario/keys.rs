@@ -239,34 +239,92 @@ fn relations(schema: &Value, sentences: &mut Vec<String>) {
     }
 }
 
+/// The keys that describe a record file: those that `[suite]` and `[verify]` share.
+fn keys_of_a_record_file(tables: &[Described]) -> (Vec<String>, Vec<String>) {
+    let described = |path: &str| {
+        let (_, schema) = tables.iter().find(|(known, _)| known == path).unwrap();
+        let mut sentences = Vec::new();
+        relations(schema, &mut sentences);
+        let rows = rows(schema).lines().map(str::to_owned).collect();
+        (rows, sentences)
+    };
+    let (rows, sentences): (Vec<String>, Vec<String>) = described("suite");
+    let (others, other_sentences): (Vec<String>, Vec<String>) = described("verify");
+    let shared = |one: Vec<String>, other: &[String]| -> Vec<String> {
+        one.into_iter()
+            .filter(|line| other.contains(line))
+            .collect()
+    };
+    (shared(rows, &others), shared(sentences, &other_sentences))
+}
+
+/// Name of a table, the way to give its spectra, and its text. The keys of a record file stand in a table of their own.
+fn section(
+    path: &str,
+    schema: &Value,
+    (of_a_file, relations_of_a_file): &(Vec<String>, Vec<String>),
+) -> (String, &'static str, String) {
+    let mut sentences = Vec::new();
+    relations(schema, &mut sentences);
+    let rows = rows(schema);
+    let has_file = of_a_file
+        .iter()
+        .all(|row| rows.lines().any(|own| own == row));
+    let mut text = "| key | meaning | values | default |\n|---|---|---|---|\n".to_owned();
+    for row in rows.lines() {
+        if !has_file || !of_a_file.iter().any(|known| known == row) {
+            writeln!(text, "{row}").unwrap();
+        }
+    }
+    if has_file {
+        sentences.retain(|sentence| !relations_of_a_file.contains(sentence));
+        sentences.push("Also the [keys of a record file](#keys-of-a-record-file).".to_owned());
+    }
+    if !sentences.is_empty() {
+        write!(text, "\n{}\n", sentences.join(" ")).unwrap();
+    }
+    // The check reads its spectra from files, or computes them by the code: each way has tables with these names.
+    let has_spectra = |schema: &Value| schema["properties"]["spectrum"].is_object();
+    let way = match path {
+        "demand" if has_spectra(&schema["properties"]["slv"]) => ", spectra from files",
+        "demand.sld" | "demand.slv" | "demand.slc" if has_spectra(schema) => ", spectra from files",
+        "demand" | "demand.sld" | "demand.slv" | "demand.slc" => ", spectra by the code",
+        _ => "",
+    };
+    let name = match path {
+        "" => "Tables of a scenario".to_owned(),
+        _ => format!("`[{path}]`"),
+    };
+    (name, way, text)
+}
+
 /// Tables with the same keys share a section.
 #[test]
 fn the_reference_of_keys_is_written_from_the_schema() {
-    let mut sections: Vec<(Vec<String>, String)> = Vec::new();
-    for (path, schema) in tables() {
-        let mut sentences = Vec::new();
-        relations(&schema, &mut sentences);
-        let mut text = format!(
-            "| key | meaning | values | default |\n|---|---|---|---|\n{}",
-            rows(&schema)
-        );
-        if !sentences.is_empty() {
-            write!(text, "\n{}\n", sentences.join(" ")).unwrap();
-        }
-        let name = match &*path {
-            "" => "Tables of a scenario".to_owned(),
-            _ => format!("`[{path}]`"),
-        };
-        match sections.iter_mut().find(|(_, known)| *known == text) {
-            Some((names, _)) => names.push(name),
-            None => sections.push((vec![name], text)),
+    let mut sections: Vec<(Vec<String>, &str, String)> = Vec::new();
+    let tables = tables();
+    let of_a_file = keys_of_a_record_file(&tables);
+    assert!(of_a_file.0.len() > 10, "{of_a_file:?}");
+    for (path, schema) in &tables {
+        let (name, way, text) = section(path, schema, &of_a_file);
+        match sections.iter_mut().find(|(_, _, known)| *known == text) {
+            Some((names, ..)) => names.push(name),
+            None => sections.push((vec![name], way, text)),
         }
     }
     assert!(sections.len() > 30, "{} sections", sections.len());
     let mut text = String::new();
-    for (names, table) in sections {
-        write!(text, "\n### {}\n\n{table}", names.join(", ")).unwrap();
+    for (names, way, table) in sections {
+        write!(text, "\n### {}{way}\n\n{table}", names.join(", ")).unwrap();
     }
+    let (rows, sentences) = of_a_file;
+    write!(
+        text,
+        "\n### Keys of a record file\n\n| key | meaning | values | default |\n|---|---|---|---|\n{}\n\n{}\n",
+        rows.join("\n"),
+        sentences.join(" ")
+    )
+    .unwrap();
     assert_generated(
         "docs/scenario.md",
         "tests/scenario/keys.rs from the reader",

@@ -347,7 +347,7 @@ fn wrong_loads_are_refused() {
         .unwrap_err();
     assert!(
         four.to_string()
-            .contains("four links take no constant forces"),
+            .contains("four links cannot have constant forces"),
         "{four}"
     );
     let lacking = refusal(&arch.replace("\nx_m = 0", ""));

@@ -219,7 +219,7 @@ fn dimensionless_axes_are_in_units_of_p_and_of_the_onset() {
     let picture = Document::parse(&picture).unwrap();
     text_place(&picture, "p t_p");
     text_place(&picture, "a / A_L");
-    let caption = "arch: R 5 m, t/R 0.15, 180 degrees, hinges anywhere; one cosine pulse; four links, impact max restitution";
+    let caption = "arch: R 5 m, t/R 0.15, 180 degrees, no joints given; one cosine pulse; four links, largest restitution";
     text_place(&picture, caption);
 
     let other = format!(

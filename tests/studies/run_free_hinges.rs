@@ -1051,7 +1051,7 @@ fn slipping_joints_are_reported() {
         ),
         (
             "friction_coefficient = 0.1",
-            ":11:24: `friction_coefficient = 0.1` does not carry the weight of the structure; must be at least 0.2063",
+            ":11:24: `friction_coefficient = 0.1` lets the structure slide under its own weight; must be at least 0.2063",
         ),
     ] {
         let refused = refusal(&format!("{SEVEN}[free_hinges]\n{options}\n"), &[]);

@@ -48,7 +48,7 @@ fn the_words_are_one_line_that_begins_with_the_safe_strengths() {
         ("..x", "survives up to 2.000 g; overturns from 3.000 g"),
         (
             ".~~x..x.",
-            "survives up to 1.000 g; uncertain from there; certainly overturns from 4.000 g (gaps above: 5.000 to 6.000 g, 8.000 g)",
+            "survives up to 1.000 g; uncertain above; certainly overturns from 4.000 g (gaps above: 5.000 to 6.000 g, 8.000 g)",
         ),
         (
             ".~.~/x~?x",
@@ -62,11 +62,11 @@ fn the_words_are_one_line_that_begins_with_the_safe_strengths() {
         ),
         (
             ".//",
-            "survives up to 1.000 g; no verdict from there; does not certainly overturn up to 3.000 g",
+            "survives up to 1.000 g; no verdict above; does not certainly overturn up to 3.000 g",
         ),
         (
             "..??",
-            "survives up to 2.000 g; not known from there; does not certainly overturn up to 2.000 g",
+            "survives up to 2.000 g; not known above; does not certainly overturn up to 2.000 g",
         ),
         ("", "no history"),
     ] {

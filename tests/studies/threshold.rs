@@ -477,7 +477,7 @@ fn models_are_built_before_any_search() {
         error
             .unwrap_err()
             .to_string()
-            .contains("four links take no ties")
+            .contains("four links cannot have ties")
     );
     assert_eq!(cases, 0);
 }

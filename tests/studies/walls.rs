@@ -449,8 +449,7 @@ fn words_name_the_wall() {
     let words = printed(path, &["run", "s.toml"]);
     for part in [
         "never moves: the wall carries pushes to the left, and the ground is too weak to start it to the right",
-        "none to the left, where a wall carries the push",
-        "pushes to the left with 2.0000 g, towards the wall",
+        "a wall carries pushes to the left",
     ] {
         assert!(words.contains(part), "{words}");
     }

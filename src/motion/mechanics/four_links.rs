@@ -66,13 +66,12 @@ pub enum FourLinkError {
     Stack,
     /// The structure has ties.
     #[error(
-        "four links take no ties: what a tie pulls changes as the links move, and the mechanisms after impacts are found from \
-         weights alone; give [free_hinges] or [elastic_joints]"
+        "four links cannot have ties: the tie force changes during the motion; give [free_hinges] or [elastic_joints]"
     )]
     Ties,
     /// The structure has constant forces.
     #[error(
-        "four links take no constant forces (`thrust_n`, or `moves = false`, of [[load]]): the mechanisms after impacts are found from \
+        "four links cannot have constant forces (`thrust_n`, or `moves = false`, of [[load]]): mechanisms after impacts follow from \
          moving masses alone; give [free_hinges] or [elastic_joints]"
     )]
     ConstantForces,

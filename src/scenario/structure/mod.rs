@@ -310,7 +310,7 @@ fn read_arch(
     if (free_hinges || !alone) && voussoirs.is_none() && joints_deg.is_none() {
         return Err(table.fault_of_table(match free_hinges {
             true => "lacks `voussoirs`: joints open between blocks; give the number of voussoirs",
-            false => "lacks `voussoirs`: piers, fill, loads and ties go with blocks; give the number of voussoirs",
+            false => "lacks `voussoirs`, which piers, fill, loads and ties need: give their number",
         }));
     }
     if joints_deg.is_some() || !alone {

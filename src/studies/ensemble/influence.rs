@@ -22,14 +22,14 @@ pub(super) enum InfluencedAnswer {
 }
 
 impl InfluencedAnswer {
-    /// Words that follow "decides 60 % of".
+    /// Words that follow "explains 60 % of the variance of".
     const fn in_words(self) -> &'static str {
         match self {
-            Self::Overturning => "whether it overturns",
-            Self::PeakRotationRank => "how far it rocks",
+            Self::Overturning => "the outcome",
+            Self::PeakRotationRank => "the largest rotation",
             Self::FirstFactor => "the first factor that overturns",
             Self::MedianIntensity => "the median intensity that overturns",
-            Self::PartThatOverturns => "how much of the map overturns",
+            Self::PartThatOverturns => "the part of the map that overturns",
         }
     }
 }
@@ -49,8 +49,8 @@ pub(super) struct NumberInfluence {
 pub(super) struct Influences(pub(super) BTreeMap<InfluencedAnswer, Option<Vec<NumberInfluence>>>);
 
 impl Influences {
-    /// Influences on the first answer with known ones in words: `friction coefficient decides 60 % (95 %: 51 % to 67 %) of the first
-    /// factor that overturns, thickness ratio 25 % (...)`. The rest is due to several numbers together, or, if the intervals allow that no rest is
+    /// Influences on the first answer with known ones in words: `friction coefficient explains 60 % (95 %: 51 % to 67 %) of the variance of
+    /// the first factor that overturns, thickness ratio 25 % (...)`. The rest is due to several numbers together, or, if the intervals allow that no rest is
     /// left, perhaps to chance.
     pub(super) fn in_words(&self) -> String {
         const LEAST: f64 = 0.05;
@@ -65,7 +65,10 @@ impl Influences {
             );
         };
         if let [only] = &numbers[..] {
-            return format!("{} alone decides {answer}", only.key_in_words(numbers));
+            return format!(
+                "{} alone explains the variance of {answer}",
+                only.key_in_words(numbers)
+            );
         }
         let mut sorted: Vec<&NumberInfluence> = numbers.iter().collect();
         sorted.sort_by(|a, b| {
@@ -84,10 +87,12 @@ impl Influences {
             format!("{share} (95 %: {low} to {high})")
         };
         let Some((first, others)) = sorted.split_first() else {
-            return format!("no number alone decides {answer}: several together do, or chance");
+            return format!(
+                "no number alone explains the variance of {answer}: several together do, or chance"
+            );
         };
         let (name, share_of_first) = (first.key_in_words(numbers), share(first));
-        let mut words = format!("{name} decides {share_of_first} of {answer}");
+        let mut words = format!("{name} explains {share_of_first} of the variance of {answer}");
         for other in others {
             words += &format!(", {} {}", other.key_in_words(numbers), share(other));
         }
@@ -95,9 +100,9 @@ impl Influences {
         let known: f64 = all.clone().map(|one| one.first_order).sum();
         let at_most: f64 = all.map(|one| one.first_order_interval[1]).sum();
         if known < 1.0 - LEAST {
-            let chance = if at_most < 1.0 { "" } else { ", or by chance" };
+            let chance = if at_most < 1.0 { "" } else { ", or to chance" };
             let left = percent(1.0 - known);
-            words += &format!("; {left} is decided by several together{chance}");
+            words += &format!("; {left} is due to several together{chance}");
         }
         words
     }
@@ -123,13 +128,13 @@ impl Influences {
             let answer = answer.in_words();
             let Some(numbers) = numbers else {
                 let nothing =
-                    format!("no shares in {answer}: the samples do not differ, or are too few");
+                    format!("no indices for {answer}: the samples do not differ, or are too few");
                 sheet.caption(14.0, &nothing);
                 sheet.gap(6.0);
                 continue;
             };
             let caption =
-                format!("share in {answer}, alone, with its 95 % interval; (r) rank correlation");
+                format!("first-order index for {answer}, 95 % interval; r: rank correlation");
             sheet.caption(14.0, &caption);
             sheet.gap(6.0);
             let height = PartHeight::Fixed(ROW_PX * numbers.len() as f64);

@@ -114,7 +114,7 @@ fn compute_row(scenario: &Scenario, row: &Row) -> Result<LimitSummary, Stability
         // Limit analysis of the row does not need four links.
         Err(error) => FourLinkAnswer::None {
             none_because: match error {
-                FourLinkError::Ties => "four links take no ties, so there is no unstable equilibrium and no equivalent block".to_owned(),
+                FourLinkError::Ties => "with ties there is no equivalent block".to_owned(),
                 FourLinkError::Limit(error) => error.to_string(),
                 error => error.to_string(),
             },

@@ -313,7 +313,7 @@ impl LimitSummary {
                 format!("any push to the {name} moves it")
             }
             Some(push_g) if is_moved => {
-                format!("first motion to the {name}, where hinges give way to others: {push_g} g")
+                format!("first motion to the {name}, where the hinges change: {push_g} g")
             }
             Some(push_g) => {
                 let push_m_s2 = shown(&self.incipient_acceleration_m_s2, 6).unwrap_or_default();
@@ -336,7 +336,7 @@ impl LimitSummary {
         }
         Some(
             match pushes_g.get(*sway).map(|push_g| format_fixed(push_g, 8)) {
-                Some(push_g) => format!("capacity to the {name}, where it falls: {push_g} g"),
+                Some(push_g) => format!("capacity to the {name}: it falls at {push_g} g"),
                 None => format!("no push to the {name} was found at which it falls"),
             },
         )

@@ -467,7 +467,7 @@ impl RunSummary {
             (Verdict::Incomplete, _) => Some("the run has no verdict".to_owned()),
             (Verdict::Uncertain, _) => Some("it is uncertain whether it overturns".to_owned()),
             _ if self.row.is_some() && self.repeatability.is_none() => {
-                Some("the run is not repeated yet".to_owned())
+                Some("the run is not repeated".to_owned())
             }
             (_, Some(change)) => Some(format!(
                 "the outcome depends on the stiffness and contact of the joints: it {happens} this motion{direction} with the given ones, and {change}"

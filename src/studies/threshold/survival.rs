@@ -162,7 +162,7 @@ fn listed(
     of_kind.collect()
 }
 
-/// Line of words: `survives up to 2.113; uncertain from there; certainly overturns from 2.401 (gaps above: 2.604 to 2.871)`. The unit
+/// Line of words: `survives up to 2.113; uncertain above; certainly overturns from 2.401 (gaps above: 2.604 to 2.871)`. The unit
 /// of strengths may be empty. For factors, `peak_g` is the peak ground acceleration at factor 1.
 pub fn survival_in_words(survival: &Survival, unit: &str, peak_g: Option<f64>) -> String {
     let both = |strength: String, in_g: String| match peak_g {
@@ -196,7 +196,7 @@ pub fn survival_in_words(survival: &Survival, unit: &str, peak_g: Option<f64>) -
     let is_certain = below.iter().all(is(Verdict::Survives));
     match below.get(1..).unwrap_or_default() {
         [only] if survival.survives_up_to.is_some() => {
-            parts.push(format!("{} from there", word(only.verdict)));
+            parts.push(format!("{} above", word(only.verdict)));
         }
         between => parts.extend(listed(between, &KINDS[1..], " at", unit)),
     }
