@@ -36,7 +36,7 @@ struct Request {
     /// Whether computations in steps are not repeated.
     #[serde(default)]
     no_repeat: bool,
-    /// Names of the files to answer with.
+    /// Names of the files to answer with; `*` for all.
     #[serde(default)]
     names: Vec<String>,
     /// Cells of a map to compute alone; `None` for a whole study.
@@ -53,6 +53,8 @@ struct Answer {
     scenario: Value,
     /// The report in words.
     words: String,
+    /// The answer in lines: verdict with its conditions, limits and main numbers.
+    answer: String,
     /// The report as JSON.
     #[serde(skip_serializing_if = "Value::is_null")]
     summary: Value,
@@ -215,10 +217,11 @@ fn study(
         }
     };
     let files = results.files.into_iter();
-    let named = files.filter(|(name, _)| names.iter().any(|one| one == name));
+    let named = files.filter(|(name, _)| names.iter().any(|one| one == name || one == "*"));
     let texts = named.map(|(name, bytes)| (name, String::from_utf8_lossy(&bytes).into_owned()));
     Ok(Answer {
         words: results.words,
+        answer: results.statement.answer(true),
         summary: results.summary,
         files: texts.collect(),
         ..Answer::default()
