@@ -139,8 +139,8 @@ duration_s = 0.6
 
 /** The questions: title, a sentence, its document, the scenarios to compare, and a study. Without scenarios the reader gives a file. */
 const QUESTIONS = [
-  ["Which push fells it?", "At 0.36 g the arch comes back, at 0.37 g it falls. Then a search finds the first push that fells it, and marks it at the slider.", "choose",
-    [startWith(["-0.35", "-0.36"]), startWith(["-0.35", "-0.37"])], "threshold"],
+  ["Which push fells it?", "At 0.38 g this arch comes back, at 0.39 g it falls. A search then finds the first push that fells it, and marks it at the slider.", "choose",
+    [startWith(["36", "16"], ["-0.35", "-0.38"]), startWith(["36", "16"], ["-0.35", "-0.39"])], "threshold"],
   ["Stronger, yet it survives", "A push of 0.47 g fells this column of drums, one of 0.60 g does not: surviving one motion is no safety margin.", "questions", [DRUMS(0.47), DRUMS(0.6)]],
   ["Twice as large", "The pulse that fells an arch of 5 m radius does not fell one of 10 m with the same shape. Size helps.", "maps",
     [startWith(["-0.35", "-0.45"]), startWith(["-0.35", "-0.45"], ["5.0", "10.0"])]],

@@ -91,6 +91,21 @@ function adopt(report) {
   find("time").addEventListener("input", () => (plays = false));
 }
 
+/** What the reader has set for the picture, by the fields. */
+const chosen = {};
+find("view-choices").addEventListener("input", ({ target, isTrusted }) => {
+  if (isTrusted) chosen[target.id] = target.type === "checkbox" ? target.checked : target.value;
+});
+
+/** Sets the picture of a next history as the reader has set that of the last one. A fall is drawn as large as it is. */
+function setView({ fall_end }) {
+  for (const [id, value] of Object.entries({ ...(fall_end && { exaggeration: 1 }), ...chosen })) {
+    const field = find(id);
+    field[field.type === "checkbox" ? "checked" : "value"] = value;
+    for (const name of ["input", "change"]) field.dispatchEvent(new Event(name));
+  }
+}
+
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 /** Whether histories play by themselves: until the reader stops one, or prefers reduced motion. */
 let plays = !still.matches;
@@ -115,11 +130,13 @@ async function showReport({ files: { "report.html": html }, scenario }, isFirst)
   find("notes").replaceChildren(...report.querySelectorAll("header > :is(#directions, .warning, #what)"));
   if (!window.archrock) {
     adopt(report);
+    setView(own);
     await window.archrock.ready;
   } else {
     const { time, playing } = window.archrock.shown();
     find("told").replaceChildren(report.querySelector(`main > ${PARTS.told}`));
     const complete = window.archrock.renew(own);
+    setView(own);
     if (!isFirst) window.archrock.seek(time);
     else if (playing) window.archrock.play(false);
     await complete;
