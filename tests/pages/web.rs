@@ -286,13 +286,17 @@ fn the_page_says_what_is_true() {
     let start = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 36\n\n[ground.half_sine]\n\
         amplitude_g = -0.35\nduration_s = 0.3\n";
     let data = json!({ "start": start, "record": file("synthetic.at2") });
-    assert_page("truth", true, &[], &data, 50);
+    assert_page("truth", true, &[], &data, 80);
 }
 
 /// An arch in motion, six questions, choices that move, comparisons and saves.
 #[test]
 fn the_page_shows_an_arch_in_motion_first() {
-    assert_page("sight", false, &[], &json!({}), 25);
+    let documents = fs::read_dir(scenarios().join("../docs")).unwrap();
+    let documents =
+        documents.filter_map(|file| Some(file.unwrap().path().file_stem()?.to_str()?.to_owned()));
+    let data = json!({ "documents": documents.collect::<Vec<_>>() });
+    assert_page("sight", false, &[], &data, 140);
 }
 
 /// The page connects to nothing, and says what a host refuses.

@@ -75,8 +75,8 @@ const SLIDERS = {
     ["arch.embrace_deg", "Embrace angle (°)", 100, 180, 1, "Angle of the arch from springing to springing: 180 is a semicircle."],
     ["arch.voussoirs", "Voussoirs", 5, 80, 1, VOUSSOIRS],
     ["pointed_arch.span_m", "Span (m)", (arch) => 6 * arch.thickness_m, (arch) => 2 * arch.rise_m, 0.1, SPAN],
-    ["pointed_arch.rise_m", "Rise (m)", (arch) => arch.span_m / 2, (arch) => 2 * arch.span_m, 0.1, RISE],
-    ["elliptic_arch.span_m", "Span (m)", (arch) => 2 * arch.rise_m, (arch) => 4 * arch.rise_m, 0.1, SPAN],
+    ["pointed_arch.rise_m", "Rise (m)", (arch) => arch.span_m / 2, (arch) => Math.min(2 * arch.span_m, 20 * arch.thickness_m), 0.1, RISE],
+    ["elliptic_arch.span_m", "Span (m)", (arch) => 2 * arch.rise_m, (arch) => Math.min(4 * arch.rise_m, 18 * arch.thickness_m), 0.1, SPAN],
     ["elliptic_arch.rise_m", "Rise (m)", (arch) => 0.25 * arch.span_m, (arch) => 0.75 * arch.span_m, 0.1, RISE],
     ...["pointed_arch", "elliptic_arch"].flatMap((table) => [
       [`${table}.thickness_m`, "Thickness (m)", (arch) => 0.06 * arch.span_m, (arch) => 0.16 * arch.span_m, 0.01, THICKNESS],
