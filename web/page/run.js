@@ -9,7 +9,8 @@ let changes = 0;
 /** Shows the answer: its first line as the headline, the others below it. */
 function sayAnswer(words, isFinal) {
   const [headline, ...more] = words.split("\n").map((line) => line.trim());
-  find("answer").textContent = headline;
+  // Screen readers read what changes.
+  if (find("answer").textContent !== headline) find("answer").textContent = headline;
   find("answer").classList.toggle("open", !isFinal);
   // On this page a control takes the place of the command.
   const withControl = (line) => line.replace(/^run `archrock \S+ FILE --set ([\w.]+)=([\d.]+)`$/, "tick \"joints may slip\", and set $2");
@@ -153,28 +154,34 @@ function edit(text, source = null, isPassing = false) {
 
 const request = (more) => ({ scenario: find("text").value, files, ...more });
 
-/** Computes the history: the picture first, the repetitions of rows of blocks after it, unless it is `passing`, on the way to another scenario. */
+// The rounds of a history of a row of blocks: its first sways, for a picture at once, all of it, and its repetitions. Other histories are whole at once.
+const FIRST_SWAYS = { no_repeat: true, sways_only: true };
+const WHOLE = { no_repeat: true, pause_ms: 300 };
+// Browsers let a stopped worker compute for some seconds: repetitions begin once the reader pauses.
+const REPEATED = { no_repeat: false, pause_ms: PAUSE_MS };
+
+/** Computes the history in rounds; without repetitions if it is `passing`, on the way to another scenario. */
 async function computeRun(isPassing = false) {
   const change = ++changes;
   markStudy();
   // What was wrong with an earlier text.
   for (const part of ["study-", "save-"]) if (find(`${part}stop`).hidden) find(`${part}status`).textContent = "";
-  for (const no_repeat of isPassing ? [true] : [true, false]) {
-    const answer = await askRun(request({ study: "run", no_repeat, names: ["report.html"] }));
-    if (!answer || (!no_repeat && change !== changes)) return;
+  for (const { pause_ms, ...round } of isPassing ? [WHOLE] : [FIRST_SWAYS, WHOLE, REPEATED]) {
+    const isFirst = isPassing || round.sways_only;
+    if (!isFirst) await new Promise((resolve) => setTimeout(resolve, pause_ms));
+    if (!isFirst && change !== changes) return;
+    const answer = await askRun(request({ study: "run", names: ["report.html"], ...round }));
+    if (!answer || (!isFirst && change !== changes)) return;
     if (answer.scenario) showScenario(answer.scenario);
     showErrors(answer.errors);
     if (answer.errors.length > 0) return sayAnswer("No verdict: the scenario below has an error.", false);
-    const isFinal = !no_repeat || !(last.scenario.free_hinges || last.scenario.elastic_joints);
+    const isFinal = !round.no_repeat || !(answer.scenario.free_hinges || answer.scenario.elastic_joints);
     document.body.classList.toggle("unrepeated", !isFinal);
     sayAnswer(isFinal ? answer.answer : NOT_REPEATED, isFinal);
-    await showReport(answer, no_repeat);
+    await showReport(answer, isFirst);
     page.answer = answer;
-    if (no_repeat && change === changes) playSoon();
+    if (isFirst && change === changes) playSoon();
     if (isFinal) return;
-    // Browsers let a stopped worker compute for some seconds: repetitions begin once the reader pauses.
-    await new Promise((resolve) => setTimeout(resolve, PAUSE_MS));
-    if (change !== changes) return;
   }
 }
 

@@ -76,8 +76,8 @@ function createQueue(module, [status, bar, stop], { read, stopped } = {}) {
     work.timer = setTimeout(() => {
       stop.hidden = false;
       status.textContent = "Computing…";
-      // While a history is repeated, its picture is the present one.
-      if (work.request.no_repeat) markStale(true);
+      // While a history is completed or repeated, its picture is the present one.
+      if (work.request.sways_only) markStale(true);
     }, 400);
   }
 

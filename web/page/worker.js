@@ -36,7 +36,7 @@ onmessage = ({ data }) => {
   }
   told = performance.now();
   // The scenario at once, for the controls; its history takes longer.
-  const { scenario } = data.no_repeat ? answerTo({ ...data, study: null }) : {};
+  const { scenario } = data.sways_only ? answerTo({ ...data, study: null }) : {};
   if (scenario) postMessage({ scenario });
   postMessage({ answer: answerTo(data) });
 };
