@@ -7,10 +7,10 @@ const verify = (holds, what) => {
 };
 const wait = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
 
-/** Waits until something holds, at most a minute. */
+/** Waits until something holds, at most two minutes. */
 async function until(holds, what) {
   for (const begin = performance.now(); !holds(); await wait(20)) {
-    if (performance.now() - begin > 60000) throw new Error(`in vain: ${what}`);
+    if (performance.now() - begin > 120000) throw new Error(`in vain: ${what}`);
   }
   passed += 1;
 }
@@ -18,7 +18,29 @@ async function until(holds, what) {
 const element = (id) => document.getElementById(id);
 const event = (target, name) => target.dispatchEvent(new Event(name, { bubbles: true }));
 const inside = (id) => element(id).querySelector("iframe:not(.waiting)").contentWindow;
-const verdictShown = () => inside("run").document.getElementById("outcome").textContent;
+const headline = () => element("answer").textContent;
+/** All lines of the answer that the page shows. */
+const answerShown = () => [headline(), ...[...element("conditions").children].map((line) => line.textContent)];
+const linesOf = (answer) => answer.split("\n").map((line) => line.trim());
+/** Returns the text in the address. */
+const addressed = () => decodeURIComponent(location.hash.split("&scenario=")[1] ?? "");
+
+/** Drops files on the page, given by their names and contents. */
+function drop(...given) {
+  const dropped = new DataTransfer();
+  for (const [name, contents] of given) dropped.items.add(new File([contents], name));
+  document.dispatchEvent(new DragEvent("drop", { dataTransfer: dropped, bubbles: true, cancelable: true }));
+}
+
+/** Returns the CRC-32 of a text, by a table. */
+function checkSumOf(text) {
+  const table = Array.from({ length: 256 }, (_, byte) => [...Array(8)].reduce((sum) => (sum & 1 ? 0xedb88320 ^ (sum >>> 1) : sum >>> 1), byte));
+  const sum = new TextEncoder().encode(text).reduce((now, byte) => table[(now ^ byte) & 255] ^ (now >>> 8), -1);
+  return ((sum ^ -1) >>> 0).toString(16).padStart(8, "0");
+}
+
+/** Presses a key with Ctrl. */
+const control = (key, on = document.body) => on.dispatchEvent(new KeyboardEvent("keydown", { key, ctrlKey: true, bubbles: true, cancelable: true }));
 const firstLine = (words) => words.split("\n")[0];
 
 /** Does something, and waits for the picture that follows. */
@@ -78,6 +100,8 @@ const PARTS = {
   async readers() {
     const text = element("text");
     const slider = (key) => element(`number-${key}`);
+    const four = data.start.replace("-0.35", "-0.3");
+    await afterwards(() => page.edit(four), "four links");
     // Sliders change the text, and the text moves the sliders.
     await afterwards(() => {
       const number = slider("ground.half_sine.amplitude_g");
@@ -86,18 +110,18 @@ const PARTS = {
     }, "a slider");
     verify(text.value.includes("amplitude_g = -0.35\n"), text.value);
     verify(firstLine(page.answer.words) === firstLine(data.slider), `${page.answer.words}\n${data.slider}`);
-    verify(verdictShown() === firstLine(data.slider), verdictShown());
-    await until(() => decodeURIComponent(location.hash.slice(1)) === text.value, "the address");
+    verify(answerShown().join("\n") === linesOf(data.answer).join("\n"), `${answerShown().join("\n")}\n${data.answer}`);
+    await until(() => addressed() === text.value, "the address");
     verify([...document.querySelectorAll(".slider")].filter((row) => row.offsetParent).length === 6, "sliders of the arch and its pulse");
     const tasks = [];
     new PerformanceObserver((list) => list.getEntries().forEach(({ duration }) => tasks.push(duration))).observe({ type: "longtask" });
     await afterwards(() => page.edit(text.value.replace("-0.35", "-0.36")), "a text");
     verify(slider("ground.half_sine.amplitude_g").value === "-0.36", "the slider follows the text");
     // The view of the reader stays.
-    const box = inside("run").document.getElementById("sizes");
+    const box = element("sizes");
     box.click();
     await afterwards(() => page.edit(text.value.replace("-0.36", "-0.35")), "the view");
-    verify(inside("run").document.getElementById("sizes").checked === false, "dimensions stay hidden");
+    verify(element("sizes").checked === false, "dimensions stay hidden");
     verify(Math.max(0, ...tasks) < 150, `tasks of ${tasks} ms`);
 
     // Sentences name no options of the program.
@@ -197,7 +221,7 @@ const PARTS = {
     event(text, "input");
     await until(() => element("errors").textContent.includes("line "), "an error");
     verify(/line \d+, column \d+: `embrace_deg = 500`/.test(element("errors").textContent), element("errors").textContent);
-    verify(inside("run").document.getElementById("stage") !== null, "the last picture");
+    verify(element("stage") !== null && headline().startsWith("No verdict"), "the last picture, without its verdict");
     element("errors").querySelector("button").click();
     verify(text.selectionStart > 0 && document.activeElement === text, "the cursor is at the error");
     await page.edit("[arch");
@@ -207,15 +231,9 @@ const PARTS = {
 
     // Records.
     await afterwards(() => page.edit(good.replace(/\n\[free_hinges\][^[]*/, "\n")), "four links");
-    await afterwards(() => {
-      const dropped = new DataTransfer();
-      dropped.items.add(new File([data.record], "synthetic.at2"));
-      document.dispatchEvent(new DragEvent("drop", { dataTransfer: dropped, bubbles: true, cancelable: true }));
-    }, "a record");
+    await afterwards(() => drop(["synthetic.at2", data.record]), "a record");
     verify(page.answer.words === data.of_record, `${page.answer.words}\n${data.of_record}`);
-    const large = new DataTransfer();
-    large.items.add(new File([new Uint8Array(50e6)], "large.at2"));
-    document.dispatchEvent(new DragEvent("drop", { dataTransfer: large, bubbles: true, cancelable: true }));
+    drop(["large.at2", new Uint8Array(50e6)]);
     await until(() => element("errors").textContent.includes("at most 16 MB"), "a large record");
 
     // Links.
@@ -286,7 +304,7 @@ const PARTS = {
     await afterwards(() => element("add").click(), "a suite");
     await until(() => page.study.files["suite.html"]?.includes("given.csv"), `the suite: ${element("study-status").textContent}`);
     await afterwards(() => page.edit(`${link.slice(0, link.indexOf("[ground"))}[ground.record]\nfile = "given.csv"\nunit = "g"\n`), "a record");
-    verify(inside("run").document.querySelector("header .warning").textContent.includes("is its unit"), "the unit is doubted");
+    verify(element("notes").querySelector(".warning").textContent.includes("is its unit"), "the unit is doubted");
 
     // The case of a threshold changes numbers alone.
     const commented = `# A comment\n${start.replace("duration_s", "# another\nduration_s")}`;
@@ -316,6 +334,282 @@ const PARTS = {
     await afterwards(() => page.edit(start.replace("-0.35", "-0.34")), "this page");
   },
 
+  /** No verdict before it is certain, no scenario that is another one than it seems, no change without a way back. */
+  async truth() {
+    const text = element("text");
+    const start = text.value;
+    const stays = async (act, what) => {
+      const now = text.value;
+      act();
+      await until(() => element("errors").textContent.includes("is refused"), what);
+      verify(text.value === now && page.answer !== null, `${what}: ${text.value}`);
+      element("errors").replaceChildren();
+    };
+
+    // The first history of a row of blocks is none to quote, in the headline or below it.
+    await until(() => page.answer?.words.includes("repeated (") && headline().startsWith("SURVIVES"), `an answer: ${headline()}`);
+    const headlines = [];
+    new MutationObserver(() => headlines.push(headline())).observe(element("answer"), { childList: true });
+    await afterwards(() => page.edit(start.replace("-0.35", "-0.45")), "a pulse that overturns");
+    verify(headline().startsWith("Not repeated yet") && element("conditions").children.length === 0, headline());
+    verify(getComputedStyle(element("told")).display === "none" && !/overturns|survives/i.test(element("view").textContent), "words of the first history");
+    // The first sways come first, then the whole history.
+    const sways = page.answer;
+    await until(() => page.answer !== sways, "the whole history");
+    verify(page.answer.files["report.html"].length > sways.files["report.html"].length || page.answer.words.includes("overturned"), "the whole history is longer");
+    await until(() => headline().startsWith("OVERTURNS"), headline());
+    verify(headlines.join("; ") === `Not repeated yet: no verdict.; ${headline()}`, headlines.join("; "));
+    verify(getComputedStyle(element("told")).display !== "none", "words of all histories");
+    // None after Stop.
+    const slow = page.edit(start.replace("-0.35", "-0.36").replace("voussoirs = 36", "voussoirs = 120"));
+    await until(() => !element("stop").hidden, "long work");
+    element("stop").click();
+    verify(headline() === "Stopped before the repetitions: no verdict.", headline());
+    await slow;
+    verify(headline() === "Stopped before the repetitions: no verdict.", headline());
+    // None where nothing moves.
+    await page.edit(start.slice(0, start.indexOf("[ground")));
+    verify(headline().startsWith("No verdict") && element("status").textContent.includes("nothing moves the structure: give a table [ground.<kind>]"), element("status").textContent);
+
+    // A link has a check sum.
+    await afterwards(() => page.edit(`${start}# ü α % \u{1f3db}\n`), "letters of all kinds");
+    const link = location.hash;
+    verify(/^#check=[0-9a-f]{8}&scenario=/.test(link) && addressed() === text.value, link);
+    verify(checkSumOf("123456789") === "cbf43926" && link.startsWith(`#check=${checkSumOf(text.value)}`), link);
+    await afterwards(() => page.edit(start), "the first arch");
+    verify(location.hash === "" && location.pathname.length > 1 === location.protocol.startsWith("file"), location.href);
+    for (const wrong of [link.slice(0, -1), link.slice(0, -4), link.slice(0, 40), link.slice(0, 4), link.replace("0.35", "0.36"), link.replace("arch", "arcs"), "#%E0%A4%A"]) {
+      await afterwards(() => (location.hash = wrong), wrong);
+      verify(element("broken").textContent.includes("damaged") && !element("broken").hidden && text.value === start, `${wrong}: ${element("broken").textContent}`);
+    }
+    await afterwards(() => (location.hash = link), "the whole link");
+    verify(element("broken").hidden && text.value.includes("ü α % \u{1f3db}"), element("broken").textContent);
+    const old = data.start;
+    await afterwards(() => (location.hash = encodeURIComponent(old)), "an older link");
+    verify(text.value === old && element("broken").textContent.includes("older link, not checked"), element("broken").textContent);
+    await afterwards(() => history.back(), "Back from a link");
+    verify(text.value.includes("ü") && element("broken").hidden, text.value);
+
+    // A wrong file changes nothing; a right one leaves the pulse, which returns.
+    const pulse = `${data.start.slice(0, data.start.indexOf("[ground"))}[ground.ricker]\namplitude_g = -0.417 # calibrated\nduration_s = 0.93\n`;
+    await afterwards(() => page.edit(pulse), "a pulse");
+    await stays(() => drop(["photo.txt", "no numbers"]), "a text");
+    await stays(() => drop(["photo.at2", "no record"]), "a wrong record");
+    await stays(() => drop(["image.at2", "a\u0000b"]), "an image");
+    await stays(() => drop(["wrong.toml", "[arch\n"]), "a wrong scenario");
+    verify(element("files").textContent === "", element("files").textContent);
+    await afterwards(() => drop(["synthetic.at2", data.record]), "a record");
+    verify(text.value.includes('[ground.record]\nfile = "synthetic.at2"') && !text.value.includes("ricker"), text.value);
+    await choose("ground", "ricker");
+    verify(text.value === pulse, text.value);
+    await choose("ground", "record:synthetic.at2");
+    verify(element("ground").value === "record:synthetic.at2" && text.value.includes('file = "synthetic.at2"'), text.value);
+    await afterwards(() => history.back(), "Back from a record");
+    verify(text.value === pulse, text.value);
+    // A table of errors goes with the next choice.
+    await page.edit(pulse.replace("ricker", "riker"));
+    await choose("ground", "rectangular");
+    verify((text.value.match(/\[ground/g) ?? []).length === 1 && element("errors").children.length === 0, text.value);
+    // Several records are listed, and taken together.
+    await afterwards(() => drop(["one.csv", "0,0\n0.1,1\n0.2,-1\n0.3,0\n"], ["two.at2", data.record]), "two records");
+    verify(["one.csv", "two.at2", "synthetic.at2"].every((name) => element("files").textContent.includes(name)), element("files").textContent);
+    verify(["record:one.csv", "record:two.at2"].every((name) => [...element("ground").options].some(({ value }) => value === name)), element("ground").textContent);
+    // A scenario opens.
+    await afterwards(() => drop(["scenario.toml", pulse]), "a scenario");
+    verify(text.value === pulse, text.value);
+
+    // Undo, by keys, the button and Back, for every kind of change; Reset.
+    await afterwards(() => page.edit(start), "the first arch");
+    const range = element("number-ground.half_sine.amplitude_g").nextSibling;
+    const slide = (...values) => values.forEach((value) => {
+      range.value = value;
+      event(range, "input");
+    });
+    await afterwards(() => slide(-0.3, -0.31, -0.32), "a slider");
+    await until(() => addressed().includes("-0.32"), "its address");
+    await afterwards(() => control("z"), "Ctrl+Z");
+    verify(text.value === start && range.value === "-0.35", text.value);
+    await afterwards(() => control("y"), "Ctrl+Y");
+    verify(text.value.includes("-0.32"), text.value);
+    text.value = start.replace("180", "175");
+    event(text, "input");
+    await until(() => page.answer.scenario.arch.embrace_deg === 175, "typed text");
+    await afterwards(() => control("z", text), "Ctrl+Z in the text");
+    verify(text.value.includes("-0.32") && text.value.includes("180"), text.value);
+    await choose("structure", "column");
+    await afterwards(() => element("undo").click(), "Undo");
+    verify(text.value.includes("-0.32") && element("structure").value === "arch", text.value);
+    await afterwards(() => element("reset").click(), "Reset");
+    verify(text.value === start, text.value);
+    await afterwards(() => history.back(), "Back from Reset");
+    verify(text.value.includes("-0.32"), text.value);
+
+    // Quoted keys, blanks in headers, strings and arrays of several lines.
+    const forms = `title = """\n[arch]\nmean_radius_m = 1\n"""\n["arch"]\n"mean_radius_m" = 5.0 # metres\nthickness_ratio = 0.15\nembrace_deg = 180\nvoussoirs = 20\n[ ground . half_sine ]\namplitude_g = -0.3\n'duration_s' = 0.3\n[map]\nduration_s = [\n  0.1,\n  0.2\n]\namplitude_g = [0.1, 0.2]\n`;
+    await afterwards(() => page.edit(forms), `forms ${element("status").textContent}`);
+    const set = (key, value) => afterwards(() => {
+      element(`number-${key}`).value = value;
+      event(element(`number-${key}`), "input");
+    }, key);
+    await set("arch.mean_radius_m", 6);
+    await set("ground.half_sine.duration_s", 0.4);
+    verify(text.value === forms.replace("= 5.0", "= 6").replace("'duration_s' = 0.3", "'duration_s' = 0.4"), text.value);
+    await choose("ground", "one_sine");
+    await choose("structure", "column");
+    verify(text.value.startsWith('title = """\n[arch]\nmean_radius_m = 1\n"""\n[column]') && text.value.includes("[ ground . one_sine ]") && text.value.includes("duration_s = [\n  0.1,"), text.value);
+    verify(element("errors").children.length === 0, element("errors").textContent);
+  },
+
+  /** What a reader meets first. */
+  async sight() {
+    const text = element("text");
+    const { archrock } = window;
+    verify(page.answer.scenario.free_hinges !== undefined, "free hinges");
+    await until(() => window.archrock.shown().playing && window.archrock.shown().time < 0.5, "the arch moves by itself, from the start");
+    const words = [];
+    const { fillText } = CanvasRenderingContext2D.prototype;
+    CanvasRenderingContext2D.prototype.fillText = function (said, ...rest) {
+      words.push(said);
+      return fillText.call(this, said, ...rest);
+    };
+    window.archrock.seek(0.7);
+    const times = element("exaggeration").value;
+    verify(times > 1 && words.includes(`movement drawn ${times} times as large`), words.join("; "));
+    element("play").click();
+    element("play").click();
+    verify(archrock !== undefined && /^[SPN]/.test(headline()), headline());
+
+    // Help at each control.
+    const silent = [...document.querySelectorAll("#form :is(input, select)")].filter((field) => !(field.ariaDescription ?? field.title) && !field.getAttribute("aria-describedby"));
+    verify(silent.length === 0, silent.map(({ id, outerHTML }) => id || outerHTML).join("; "));
+
+    // Six questions of one click, with a sentence and a document.
+    const cards = [...element("questions").children];
+    verify(cards.map((card) => card.querySelector("button").textContent).join("; ") ===
+      "Which push fells it?; Stronger, yet it survives; Twice as large; Four hinges or all joints?; On piers; Your record", "the questions");
+    verify(cards.every((card) => card.querySelector("p").textContent.length > 40 && data.documents.includes(card.textContent.match(/docs\/(\w+)\.md/)?.[1])), "sentences and documents");
+    const ask = async (number, begins) => {
+      cards[number].querySelector("button").click();
+      await until(() => headline().startsWith("Not repeated") || page.answer === null, `question ${number}`);
+      await until(() => headline().startsWith(begins), `the answer to question ${number}: ${headline()}`);
+      verify(element("errors").children.length === 0, element("errors").textContent);
+    };
+    const compared = () => [...element("plots").querySelectorAll(".plot")].find((plot) => plot.textContent.includes("now and before"))?.textContent ?? "";
+    await ask(1, "SURVIVES");
+    verify(text.value.includes("0.6\n") && compared().includes("amplitude_g = 0.47"), compared());
+    await ask(2, "SURVIVES");
+    verify(compared().includes("mean_radius_m = 10") && compared().includes("mean_radius_m = 5"), compared());
+    await ask(3, "SURVIVES");
+    verify(compared().includes("free hinges") && compared().includes("four links"), compared());
+    await ask(4, "SURVIVES");
+    verify(compared() === "" && text.value.includes("[piers]"), compared());
+    let asked = false;
+    element("record").addEventListener("click", (click) => (click.preventDefault(), (asked = true)), { once: true });
+    cards[5].querySelector("button").click();
+    verify(asked, "a file is asked for");
+    // The first one ends with a threshold, which is marked beside the slider, for this scenario alone.
+    cards[0].querySelector("button").click();
+    await until(() => page.study?.files["threshold.csv"], `the threshold: ${element("study-status").textContent}`);
+    const mark = () => [...document.querySelectorAll(".slider .mark")].find((one) => one.offsetParent)?.textContent ?? "";
+    await until(() => mark() !== "", "a mark");
+    verify(/^▲ -0\.387 overturns$/.test(mark()), mark());
+    await afterwards(() => page.edit(text.value.replace("-0.39", "-0.2")), "another amplitude");
+    verify(mark().includes("-0.387"), mark());
+    // Every file of the study, and the picture, can be saved.
+    const saved = [];
+    const { click } = HTMLAnchorElement.prototype;
+    HTMLAnchorElement.prototype.click = function () {
+      saved.push(this.download);
+    };
+    element("study-files").querySelectorAll("button").forEach((button) => button.click());
+    document.querySelector("[data-save='arch.png']").click();
+    await until(() => saved.includes("arch.png"), "the picture");
+    verify(["threshold.html", "threshold.csv", "threshold.svg", "threshold.json"].every((name) => saved.includes(name)), saved.join());
+    HTMLAnchorElement.prototype.click = click;
+    await afterwards(() => page.edit(text.value.replace("5.0", "6.0")), "another arch");
+    verify(mark() === "", mark());
+
+    // Examples of the recipes.
+    const examples = [...element("example").options];
+    verify(examples.length > 8, "examples");
+    await choose("example", examples.find(({ text }) => text.startsWith("Arch of 6 m span and 2 m rise")).value);
+    verify(text.value.includes("Arch of 6 m span") && text.value.includes("-0.8"), text.value);
+
+    // A fall is drawn as large as it is.
+    await afterwards(() => page.edit(`${text.value}# again\n`), "the fall again");
+    await until(() => headline().startsWith("OVERTURNS"), headline());
+    verify(element("exaggeration").value === "1", `drawn ${element("exaggeration").value} times as large`);
+
+    // Each first choice moves.
+    await afterwards(() => element("reset").click(), "Reset");
+    const lifeless = [];
+    for (const model of ["", "free_hinges"]) {
+      for (const structure of ["arch", "pointed_arch", "elliptic_arch", "column"]) {
+        await choose("model", model);
+        await choose("structure", structure);
+        for (const pulse of ["rectangular", "step_pair", "half_sine", "one_sine", "one_cosine", "triangular", "ricker", "antisymmetric_ricker", "mavroeidis_papageorgiou", "gabor", "windowed_sine"]) {
+          await choose("ground", pulse);
+          const most = Math.max(...window.archrock.largest()[1].map(Math.abs));
+          if (!(most > 2e-4) || element("errors").children.length > 0) lifeless.push(`${model} ${structure} ${pulse} ${most}`);
+        }
+      }
+    }
+    verify(lifeless.length === 0, lifeless.join("; "));
+  },
+
+  /** Hosts that refuse something, and a page that connects to nothing. */
+  async hosts() {
+    const refused = [];
+    document.addEventListener("securitypolicyviolation", ({ effectiveDirective }) => refused.push(effectiveDirective));
+    const fails = (promise) => promise.then(() => false, () => true);
+    verify(await fails(fetch(`${address}secret`, { method: "POST", mode: "no-cors", body: "text" })), "a connection");
+    navigator.sendBeacon(`${address}secret`, "text");
+    const image = new Image();
+    verify(await fails(new Promise((resolve, reject) => Object.assign(image, { onload: resolve, onerror: reject, src: `${address}secret.png` }))), "a picture");
+    await until(() => refused.filter((one) => one === "connect-src").length === 2 && refused.includes("img-src"), `the policy: ${refused.join()}`);
+    const policy = document.querySelector("meta[http-equiv=Content-Security-Policy]").content;
+    verify(policy.startsWith("default-src 'none'") && !/https:|\*/.test(policy), policy);
+
+    // A host that takes the page into a frame of its own.
+    const whole = await (await fetch(`${address}single`)).text();
+    const told = (html) => html.replace(/<\/body>(?![^]*<\/body>)/, `<script>setInterval(() => parent.postMessage(["answer", "broken", "study-status"].map((id) => document.getElementById(id)?.textContent), "*"), 200); window.study = () => page.computeStudy("limit");<\/script></body>`);
+    const host = async (html, sandbox, holds, what) => {
+      const frame = document.createElement("iframe");
+      if (sandbox) frame.sandbox = sandbox;
+      let last = null;
+      const hear = ({ source, data: said }) => {
+        if (source === frame.contentWindow) last = said;
+      };
+      addEventListener("message", hear);
+      Object.assign(frame, { srcdoc: html, width: 900, height: 700 });
+      document.body.append(frame);
+      await until(() => last && holds(last, frame), `${what}: ${last}`);
+      removeEventListener("message", hear);
+      frame.remove();
+    };
+    const studies = told(whole).replace("setInterval(", "let done; setInterval(() => window.page?.answer && !done && (done = true) && window.study(), 100); setInterval(");
+    await host(studies, "allow-scripts", ([answer, , study]) => /repeated|SURVIVES/.test(answer) && study.includes("refuses frames"), "a sandbox");
+    const withPolicy = (words) => told(whole).replace("<head>", `<head><meta http-equiv="Content-Security-Policy" content="${words}">`);
+    await host(withPolicy("script-src 'unsafe-inline' blob:"), "", ([, broken]) => broken.includes("refuses WebAssembly"), "no WebAssembly");
+    await host(withPolicy("worker-src 'none'"), "", ([, broken]) => broken.includes("workers are refused"), "no workers");
+    // Without scripts the page says so by itself: at once where the browser has none, after some seconds where the host forbids them.
+    const bare = Object.assign(document.createElement("iframe"), { srcdoc: whole.replace("<head>", `<head><meta http-equiv="Content-Security-Policy" content="script-src 'none'">`) });
+    document.body.append(bare);
+    await until(() => bare.contentDocument?.getElementById("refused"), "a page without scripts");
+    const seen = () => bare.contentWindow.getComputedStyle(bare.contentDocument.getElementById("refused")).visibility;
+    verify(seen() === "hidden", "the sentence comes too early");
+    await until(() => seen() === "visible", "a sentence without scripts");
+    verify(/refuses the scripts/.test(bare.contentDocument.getElementById("refused").textContent) && element("refused") === null, "the sentence");
+    verify(/needs JavaScript/.test(document.querySelector("noscript").textContent), "noscript");
+    bare.remove();
+
+    // Tables scroll by keys.
+    await afterwards(() => page.edit(element("text").value.replace("[free_hinges]\n", "")), "four links");
+    await page.computeStudy("threshold");
+    const tables = [...inside("study-page").document.querySelectorAll(".scroll")];
+    verify(tables.length > 0 && tables.every(({ tabIndex }) => tabIndex === 0), "tables that scroll");
+  },
+
   async narrow() {
     // A browser that refuses the module.
     const old = Object.assign(document.createElement("iframe"), { src: `${address}old/` });
@@ -326,7 +620,20 @@ const PARTS = {
     document.body.append(frame);
     await until(() => frame.contentWindow.page?.answer, "the narrow page");
     const { document: narrow } = frame.contentWindow;
-    verify(narrow.documentElement.scrollWidth <= 390, `${narrow.documentElement.scrollWidth} px wide`);
+    // Whatever the reader moves, the stage stays in view, also at 200 %.
+    for (const [width, height] of [[390, 840], [768, 1024], [640, 500], [1280, 900]]) {
+      Object.assign(frame, { width, height });
+      await wait(300);
+      for (const id of ["view", "questions", "number-arch.mean_radius_m", "number-ground.half_sine.duration_s", "model"]) {
+        narrow.getElementById(id).scrollIntoView({ block: "end" });
+        await wait(50);
+        const { top, bottom } = narrow.getElementById("stage").getBoundingClientRect();
+        verify(top >= 0 && bottom <= height && bottom - top >= 150, `${width}: the stage from ${top} to ${bottom} at ${id}`);
+      }
+      verify(narrow.documentElement.scrollWidth <= width, `${narrow.documentElement.scrollWidth} px wide of ${width}`);
+    }
+    Object.assign(frame, { width: 390, height: 840 });
+    await wait(300);
     const walker = narrow.createTreeWalker(narrow.body, NodeFilter.SHOW_TEXT);
     const small = [];
     while (walker.nextNode()) {
@@ -351,5 +658,5 @@ if (window === top) {
     failures.push(`${error} ${error.stack}`);
   }
   failures.push(...window.errors);
-  await fetch(address, { method: "POST", mode: "no-cors", body: JSON.stringify({ failures, passed }) });
+  await fetch(`${address}verdict`, { method: "POST", mode: "no-cors", body: JSON.stringify({ failures, passed }) });
 }

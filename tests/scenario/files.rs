@@ -1,12 +1,16 @@
 //! Scenario files: their contents, errors with places, and scenarios written back as text.
 
+use std::ops::ControlFlow;
+
 use crate::common::schema::violations;
 use crate::common::{ARCH, COLUMN};
 use archrock::dynamics::{Directions, RowOptions};
+use archrock::output::Figure;
 use archrock::scenario::{
     FREE_HINGES, Ground, Quantity, Scenario, ScenarioErrors, Simulation, Source, Structure,
     TextPosition, shown, shown_lines,
 };
+use archrock::studies::run::{self, RunOptions, Sinks};
 use archrock::{Arch, Column, GroundMotion, ImpactModel, Pulse, Sway};
 use proptest::prelude::*;
 use serde_json::json;
@@ -320,6 +324,18 @@ fn a_run_needs_something_that_moves() {
         nothing,
         "nothing moves the structure: give a table [ground.<kind>], such as [ground.rectangular], or [initial]"
     );
+    // The study refuses it, for whoever computes it.
+    let scenarios = [parse(ARCH).unwrap()];
+    let watch = &mut |_| ControlFlow::Continue(());
+    let options = RunOptions::default();
+    let refused = run::results(
+        &scenarios,
+        &options,
+        Figure::SCREEN,
+        Sinks::default(),
+        watch,
+    );
+    assert_eq!(refused.unwrap_err().to_string(), nothing);
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("a.csv"), "0,1\n1,0\n").unwrap();
     let path = folder.path().join("s.toml");

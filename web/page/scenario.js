@@ -1,104 +1,32 @@
-// The text of a scenario: the library reads it, the sliders change lines of it.
+// The text of a scenario: the library reads it, the controls change lines of it.
 
-const START = `# Rock an arch: change this text, or move the sliders.
-[arch]
-mean_radius_m = 5.0
-thickness_ratio = 0.15
-embrace_deg = 180.0
-voussoirs = 36
+/** Strings, also of several lines, and comments. They may look like keys and tables. */
+const STRING_OR_COMMENT = /"""(?:\\[^]|[^\\])*?"""|'''[^]*?'''|"(?:\\.|[^"\\\n])*"|'[^'\n]*'|#.*/g;
+/** Keys and headers, in which each quoted name and each comment is masked by underscores. */
+const PATH = String.raw`[\w-]+(?:\s*\.\s*[\w-]+)*`;
+const HEADER = new RegExp(`^(\\s*\\[\\[?\\s*)(${PATH})\\s*\\]\\]?\\s*_*$`);
+const KEY = new RegExp(`^(\\s*)(${PATH})\\s*=`);
 
-[ground.half_sine]
-amplitude_g = -0.3
-duration_s = 0.3
-`;
-
-/** Kinds of structures, pulses and models: the name of the table, its label and its text. */
-const STRUCTURES = [
-  ["arch", "Circular arch", "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 36\n"],
-  ["pointed_arch", "Pointed arch", "[pointed_arch]\nspan_m = 8.0\nrise_m = 5.0\nthickness_m = 0.8\nvoussoirs = 36\n"],
-  ["elliptic_arch", "Elliptic arch", "[elliptic_arch]\nspan_m = 8.0\nrise_m = 3.0\nthickness_m = 0.9\nvoussoirs = 36\n"],
-  ["column", "Column", "[column]\nheight_m = 4.0\nwidth_m = 0.8\n"],
-];
-/** Pulses have the same keys, and wave trains these as well. A test compares the names with those of the program. */
-const PULSES = [
-  ["rectangular", "Rectangle"],
-  ["step_pair", "Two steps"],
-  ["half_sine", "Half sine"],
-  ["one_sine", "One sine"],
-  ["one_cosine", "One cosine"],
-  ["triangular", "Triangle"],
-  ["ricker", "Ricker"],
-  ["antisymmetric_ricker", "Antisymmetric Ricker"],
-  ["mavroeidis_papageorgiou", "Mavroeidis and Papageorgiou", ["gamma", "phase_deg"]],
-  ["gabor", "Gabor", ["gamma", "phase_deg"]],
-  ["windowed_sine", "Windowed sine", ["cycles", "phase_deg"]],
-];
-/** The sliders of the keys of wave trains: label, range. */
-const WAVE_TRAIN = {
-  gamma: ["Length in periods (gamma)", 1.1, 10, 0.1],
-  cycles: ["Length in periods", 1, 10, 0.5],
-  phase_deg: ["Phase (°)", -180, 180, 5],
-};
-/** Names of record files that are tables of numbers. */
-const TABLE_FILE = /\.(csv|tsv|txt|dat)$/i;
-/** Keys of such a record; the comments are for the reader to complete. */
-const COLUMNS = `unit = "g" # of the accelerations; or "m/s2", "cm/s2"
-# time_column = 1
-# acceleration_column = 2
-# dt_s = 0.01 # if there is no column of times
-# skip_rows = 0
-`;
-/** All kinds of structures: the page offers the first ones. */
-const KINDS = STRUCTURES.map(([name]) => name).concat("basket_arch", "blocks");
-const MODELS = [
-  ["", "Four links: hinges where they open first", ""],
-  ["free_hinges", "Free hinges: any joint may open", "[free_hinges]\n"],
-  ["elastic_joints", "Elastic joints", "[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n"],
-];
-
-/** The sliders: key, label, range. A slider is shown if the scenario has its table. Ends that depend on other keys of the table leave most arches standing. */
-const SLIDERS = {
-  structure: [
-    ["arch.mean_radius_m", "Mean radius (m)", 0.5, 20, 0.1],
-    ["arch.span_m", "Span (m)", (arch) => 2 * (arch.rise_m ?? 0.5), 30, 0.1],
-    ["arch.rise_m", "Rise (m)", (arch) => 0.2 * arch.span_m, (arch) => arch.span_m / 2, 0.1],
-    ["arch.thickness_ratio", "Thickness / mean radius", 0.11, 0.4, 0.001],
-    ["arch.thickness_m", "Thickness (m)", (arch) => 0.055 * (arch.span_m ?? 2 * arch.mean_radius_m), (arch) => 0.11 * (arch.span_m ?? 2 * arch.mean_radius_m), 0.01],
-    ["arch.embrace_deg", "Embrace angle (°)", 100, 180, 1],
-    ["arch.voussoirs", "Voussoirs", 5, 80, 1],
-    ["pointed_arch.span_m", "Span (m)", (arch) => 6 * arch.thickness_m, (arch) => 2 * arch.rise_m, 0.1],
-    ["pointed_arch.rise_m", "Rise (m)", (arch) => arch.span_m / 2, (arch) => 2 * arch.span_m, 0.1],
-    ["elliptic_arch.span_m", "Span (m)", (arch) => 2 * arch.rise_m, (arch) => 4 * arch.rise_m, 0.1],
-    ["elliptic_arch.rise_m", "Rise (m)", (arch) => 0.25 * arch.span_m, (arch) => 0.75 * arch.span_m, 0.1],
-    ...["pointed_arch", "elliptic_arch"].flatMap((table) => [
-      [`${table}.thickness_m`, "Thickness (m)", (arch) => 0.06 * arch.span_m, (arch) => 0.16 * arch.span_m, 0.01],
-      [`${table}.voussoirs`, "Voussoirs", 5, 80, 1],
-    ]),
-    ["column.height_m", "Height (m)", 0.5, 20, 0.1],
-    ["column.width_m", "Width (m)", 0.1, 4, 0.01],
-  ],
-  ground: [
-    ...PULSES.flatMap(([pulse, , keys = []]) => [
-      [`ground.${pulse}.amplitude_g`, "Amplitude (g): minus pushes right", -2, 2, 0.001],
-      [`ground.${pulse}.duration_s`, "Duration (s)", 0.05, 3, 0.005],
-      ...keys.map((key) => [`ground.${pulse}.${key}`, ...WAVE_TRAIN[key]]),
-    ]),
-    ["ground.record.scale", "Factor on the record", 0.05, 20, 0.01],
-  ],
-  model: [
-    ["free_hinges.friction_coefficient", "Friction coefficient", 0.3, 1.5, 0.01],
-    ["elastic_joints.normal_stiffness_gpa_m", "Normal stiffness (GPa/m)", 0.5, 200, 0.5],
-    ["elastic_joints.friction_coefficient", "Friction coefficient", 0.3, 1.5, 0.01],
-  ],
-};
+/** Returns the names of a path, without their quotes and blanks, with dots in between. */
+const plain = (path) => path.match(/"[^"]*"|'[^']*'|[\w-]+/g).map((name) => name.replace(/^["']|["']$/g, "")).join(".");
 
 /** Returns the lines of a text, each with the path of its key or header, and the path of its table. An inline table is one line. */
 function parsed(text) {
+  const whole = text.replace(/\n*$/, "\n");
+  const masked = whole.replace(STRING_OR_COMMENT, (part) => part.replace(/[^\n]/g, "_")).split("\n");
   let table = "";
-  return text.replace(/\n*$/, "\n").split("\n").map((line) => {
-    const header = line.match(/^\s*\[\[?\s*([\w.-]+)\s*\]\]?\s*(#.*)?$/)?.[1];
+  // Brackets of arrays that go on in the next line.
+  let depth = 0;
+  return whole.split("\n").map((line, index) => {
+    const outside = depth > 0 ? "" : masked[index];
+    const pathOf = (form) => {
+      const [, before, path] = outside.match(form) ?? [];
+      return path && plain(line.slice(before.length, before.length + path.length));
+    };
+    for (const bracket of masked[index].match(/[[\]{}]/g) ?? []) depth += "[{".includes(bracket) ? 1 : -1;
+    const header = pathOf(HEADER);
     table = header ?? table;
-    const key = line.match(/^\s*([\w.-]+)\s*=/)?.[1];
+    const key = pathOf(KEY);
     return { line, table, isHeader: header !== undefined, path: header ?? (key && (table ? `${table}.${key}` : key)) };
   });
 }
@@ -115,6 +43,12 @@ function withPulse(text, from, to) {
   const removed = keysOf(from).filter((key) => !keysOf(to).includes(key));
   const named = withName(text, `ground.${from}`, to);
   return removed.reduce((now, key) => withValue(now, `ground.${to}.${key}`, null), named);
+}
+
+/** Returns the tables of ground motions in a text, whether or not the library knows them. */
+function groundTables(text) {
+  const tables = parsed(text).map(({ path }) => path?.match(/^ground\.[^.]+/)?.[0]);
+  return [...new Set(tables)].filter((table) => table && table !== "ground.right");
 }
 
 const isWithin = (path, table) => path === table || path?.startsWith(`${table}.`);
@@ -135,16 +69,17 @@ function withValue(text, key, value) {
   if (given >= 0 && value === null) now.splice(given, 1);
   else if (given >= 0) now[given] = now[given].replace(/=\s*[^#]*?(\s*#.*)?$/, `= ${value}$1`);
   else if (inline >= 0) {
-    const entry = new RegExp(`([{,]\\s*)${name}\\s*=[^,}]*`);
-    if (value === null) now[inline] = now[inline].replace(new RegExp(`,\\s*${name}\\s*=[^,}]*|${name}\\s*=[^,}]*,?`), "");
-    else if (entry.test(now[inline])) now[inline] = now[inline].replace(entry, `$1${name} = ${value} `).replace(/ +,/, ",");
+    const quoted = `["']?${name}["']?\\s*=`;
+    const entry = new RegExp(`([{,]\\s*${quoted})[^,}]*`);
+    if (value === null) now[inline] = now[inline].replace(new RegExp(`,\\s*${quoted}[^,}]*|${quoted}[^,}]*,?`), "");
+    else if (entry.test(now[inline])) now[inline] = now[inline].replace(entry, `$1 ${value} `).replace(/ +,/, ",");
     else now[inline] = now[inline].replace(/,?\s*\}/, (end, at, line) => `${/\{\s*$/.test(line.slice(0, at)) ? " " : ", "}${name} = ${value} }`);
   } else if (value === null) return text;
   else if (from >= 0) {
     let to = from + 1;
     while (to < all.length && !all[to].isHeader) to += 1;
     now.splice(endOfTable(all, to), 0, `${name} = ${value}`);
-  } else if (dotted >= 0) now.splice(dotted + 1, 0, now[dotted].replace(/[\w-]+\s*=.*/, `${name} = ${value}`));
+  } else if (dotted >= 0) now.splice(dotted + 1, 0, now[dotted].replace(/("[^"]*"|'[^']*'|[\w-]+)\s*=.*/, `${name} = ${value}`));
   else now.push(`[${table}]`, `${name} = ${value}`, "");
   return now.join("\n");
 }

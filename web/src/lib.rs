@@ -16,7 +16,7 @@ use archrock::studies::run::Sinks;
 use archrock::studies::{
     Computation, Options, Progress, Study as _, StudyError, StudyKind, Style, Work,
 };
-use archrock::{OverturningMap, Runner};
+use archrock::{Directions, OverturningMap, Runner};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -36,7 +36,10 @@ struct Request {
     /// Whether computations in steps are not repeated.
     #[serde(default)]
     no_repeat: bool,
-    /// Names of the files to answer with.
+    /// Whether only the first sways of a row of blocks are computed, in one direction: a first picture at once.
+    #[serde(default)]
+    sways_only: bool,
+    /// Names of the files to answer with; `*` for all.
     #[serde(default)]
     names: Vec<String>,
     /// Cells of a map to compute alone; `None` for a whole study.
@@ -53,6 +56,8 @@ struct Answer {
     scenario: Value,
     /// The report in words.
     words: String,
+    /// The answer in lines: verdict with its conditions, limits and main numbers.
+    answer: String,
     /// The report as JSON.
     #[serde(skip_serializing_if = "Value::is_null")]
     summary: Value,
@@ -81,6 +86,9 @@ thread_local! {
     static REQUEST: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
     static ANSWER: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
 }
+
+/// Part of the default time after the ground motion that a first picture shows: 0.6 s, and the first half cycle of a larger arch.
+const SHOWN: f64 = 0.06;
 
 unsafe extern "C" {
     /// Receives the progress: cases that are done, and all.
@@ -152,6 +160,13 @@ fn answer_to(request: Request) -> Answer {
             let mut options = request.options;
             options.run.no_repeat = request.no_repeat;
             let rows = request.rows.as_deref();
+            let has_row = ["free_hinges", "elastic_joints"]
+                .iter()
+                .any(|table| json.get(table).is_some());
+            let scenario = match request.sways_only && has_row {
+                true => first_sways(&scenario),
+                false => scenario,
+            };
             let computed = match request.cells {
                 Some(cells) => cells_of_map(&scenario, &cells),
                 None => study(kind, &scenario, &options, &request.names, rows),
@@ -161,6 +176,24 @@ fn answer_to(request: Request) -> Answer {
     };
     answer.scenario = json;
     answer
+}
+
+/// Returns a scenario whose history ends soon after the ground motion, in its first direction. Most of the work of a history is its decay.
+fn first_sways(scenario: &Scenario) -> Scenario {
+    let directions = match scenario.simulation.direction {
+        Directions::Both => Directions::AsGiven,
+        one => one,
+    };
+    let first = scenario.in_directions(directions);
+    let ground_end_s = scenario.ground_motion().end_s();
+    let after_s = scenario.request().end_s - ground_end_s;
+    match scenario.simulation.duration_s {
+        Some(_) => first,
+        None => {
+            let end = [("simulation.duration_s", ground_end_s + SHOWN * after_s)];
+            first.with_values(&end).unwrap_or(first)
+        }
+    }
 }
 
 fn watch(Progress { done, all, .. }: Progress) -> ControlFlow<()> {
@@ -215,10 +248,11 @@ fn study(
         }
     };
     let files = results.files.into_iter();
-    let named = files.filter(|(name, _)| names.iter().any(|one| one == name));
+    let named = files.filter(|(name, _)| names.iter().any(|one| one == name || one == "*"));
     let texts = named.map(|(name, bytes)| (name, String::from_utf8_lossy(&bytes).into_owned()));
     Ok(Answer {
         words: results.words,
+        answer: results.statement.answer(true),
         summary: results.summary,
         files: texts.collect(),
         ..Answer::default()

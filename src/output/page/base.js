@@ -3,7 +3,7 @@ const find = (id) => document.getElementById(id);
 const data = JSON.parse(find("data").textContent);
 // In print pages are light, without controls and commands; scripts that fit a page to its sheet measure it with this class.
 for (const [event, prints] of [["beforeprint", true], ["afterprint", false]]) {
-  window.addEventListener(event, () => document.documentElement.classList.toggle("print", prints));
+  if (!document.body.classList.contains("host")) window.addEventListener(event, () => document.documentElement.classList.toggle("print", prints));
 }
 function buffer(text) {
   const characters = atob(text);

@@ -1,5 +1,8 @@
 // Plays a motion, with the controls of the page and the keys.
 
+/** True if the motion is a part of a page with other things, which keeps its own keys and its own print. */
+const isPart = document.body.classList.contains("host");
+
 /** Fills the page with a motion, as for `createStage`, that has `opens_s`, the time at which the page opens, and `fall_end`, the end of the fall in words
  * if there is one. `addCurves` adds the curves to the plots, and yields after each plot. */
 function createPlayer(motion, addCurves) {
@@ -82,7 +85,7 @@ function createPlayer(motion, addCurves) {
   async function addPlots() {
     for (const _ of addCurves(curves, stage, motion)) {
       // A page around this one answers its reader in between.
-      if (window !== window.parent) await new Promise((resolve) => setTimeout(resolve));
+      if (isPart || window !== window.parent) await new Promise((resolve) => setTimeout(resolve));
       if (signal.aborted) return curves.remove();
     }
     curves.place();
@@ -121,7 +124,7 @@ function createPlayer(motion, addCurves) {
     0: curves.showAll,
     t: () => find("thrust").click(),
   };
-  document.addEventListener("keydown", (event) => {
+  (isPart ? canvas : document).addEventListener("keydown", (event) => {
     const own = event.target.matches("button, select, summary, input:not(#time)");
     if (own || event.ctrlKey || event.metaKey || event.altKey) return;
     const act = keys[event.key] ?? keys[event.key.toLowerCase()];
@@ -139,7 +142,7 @@ function createPlayer(motion, addCurves) {
   const LEAST_PX = { stage: 200, plot: 70 };
   // Height of the title and the legend of a plot.
   const BESIDE_PLOT_PX = 36;
-  window.addEventListener("beforeprint", () => {
+  if (!isPart) window.addEventListener("beforeprint", () => {
     const { width: wide, height: tall } = SHEET_PX;
     const holder = find("plots");
     canvas.style.height = "0";
@@ -156,7 +159,7 @@ function createPlayer(motion, addCurves) {
     if (least > tall) document.body.style.zoom = tall / least;
     seek(time);
   }, { signal });
-  window.addEventListener("afterprint", () => {
+  if (!isPart) window.addEventListener("afterprint", () => {
     canvas.style.height = document.body.style.zoom = "";
     for (const plot of plots) plot.setSize({ width: find("plots").clientWidth, height: plot.tall });
     seek(time);
@@ -185,6 +188,7 @@ function createPlayer(motion, addCurves) {
     },
     ready: addPlots(),
     times,
+    largest: () => [Array.from(times.subarray(0, stage.historyCount)), stage.turns(motion.largest_body)],
     hingesAt: stage.hingesAt,
     pressure: stage.pressure,
     zoom: curves.zoom,

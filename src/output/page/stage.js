@@ -266,6 +266,11 @@ function createStage(canvas, motion) {
       pen.textAlign = g < 0 ? "left" : "right";
       pen.fillText(`ground ${fixed(g, 3)} g`, wide / 2 + (g < 0 ? 10 : -10), y + 4);
     }
+    if (exaggeration > 1) {
+      pen.fillStyle = css("--soft");
+      pen.textAlign = "left";
+      pen.fillText(`movement drawn ${exaggeration} times as large`, 8, 16);
+    }
     return inWords(time, at, poses);
   }
 

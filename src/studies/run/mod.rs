@@ -163,7 +163,7 @@ pub fn check(scenario: &Scenario, options: &RunOptions) -> Result<(), String> {
 /// `watch` receives the progress in milliseconds of simulated time; all of it is done while the history is repeated.
 ///
 /// # Errors
-/// When the options do not fit, a motion cannot be computed, a result cannot be written, or the work is cancelled.
+/// When nothing moves the structure, the options do not fit, a motion cannot be computed, a result cannot be written, or the work is cancelled.
 pub fn results(
     scenarios: &[Scenario],
     options: &RunOptions,
@@ -174,7 +174,10 @@ pub fn results(
     let all_models: Vec<_> = scenarios.iter().map(|one| one.motion.kind).collect();
     let runs: Result<Vec<Run<'_>>, String> = scenarios
         .iter()
-        .map(|one| Run::new(one, options, figure, &all_models))
+        .map(|one| {
+            one.check_for_run()?;
+            Run::new(one, options, figure, &all_models)
+        })
         .collect();
     let (runs, mut all) = (runs.map_err(StudyError::Scenario)?, Vec::new());
     for (number, run) in runs.iter().enumerate() {

@@ -21,6 +21,13 @@ function* addCurves(plots, stage, data) {
   const named = few ? turning : [{ ...look(most), values: turns[most] }, { ...look((most + 1) % bodies), name: "other blocks" }];
   plots.add("Rotation (rad, anticlockwise)", 230, Array.from(stage.times.subarray(0, stage.historyCount)), turning, named);
   yield;
+  // The page to try adds the history before the last change.
+  if (data.before) {
+    const [ts, ...values] = uPlot.join([[Array.from(stage.times.subarray(0, stage.historyCount)), turns[most]], data.before.curve]);
+    const look = (name, axis) => ({ name, color: `--curve-${axis + 1}`, dash: dashes[axis], values: values[axis] });
+    plots.add("Largest rotation (rad), now and before", 150, ts, data.before.names.map(look));
+    yield;
+  }
   for (const { curves } of data.points ?? []) {
     // Each curve is thinned separately, so their times differ.
     const [ts, ...values] = uPlot.join(curves.map(({ curve: encoded }) => curve(encoded)));
