@@ -82,7 +82,7 @@ try {
   askFile = createQueue(module, work("save-"));
   startHelpers(module);
   showSteps(steps.undone);
-  history.replaceState({ steps: steps.undone }, "");
+  write("replaceState");
   find("text").value = textOfAddress();
   await computeRun();
 } catch (error) {
