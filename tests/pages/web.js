@@ -403,9 +403,14 @@ const PARTS = {
     await choose("ground", "ricker");
     verify(text.value === pulse, text.value);
     await choose("ground", "record:synthetic.at2");
+    await afterwards(() => page.edit(text.value.replace("scale = 1.0", "scale = 1.5")), "a factor");
+    await choose("ground", "ricker");
+    await choose("ground", "record:synthetic.at2");
+    verify(text.value.includes("scale = 1.5"), text.value);
     verify(element("ground").value === "record:synthetic.at2" && text.value.includes('file = "synthetic.at2"'), text.value);
     await afterwards(() => history.back(), "Back from a record");
     verify(text.value === pulse, text.value);
+    await stays(() => drop(["synthetic.at2", "another, which is no record"]), "a wrong record of the same name");
     // A table of errors goes with the next choice.
     await page.edit(pulse.replace("ricker", "riker"));
     await choose("ground", "rectangular");
