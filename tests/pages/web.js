@@ -21,7 +21,7 @@ const inside = (id) => element(id).querySelector("iframe:not(.waiting)").content
 const headline = () => element("answer").textContent;
 /** All lines of the answer that the page shows. */
 const answerShown = () => [headline(), ...[...element("conditions").children].map((line) => line.textContent)];
-const linesOf = (answer) => answer.split("\n").map((line) => line.trim());
+const linesOf = (answer) => answer.replace(/\n {4,}/g, " ").split("\n").map((line) => line.trim());
 /** Returns the text in the address. */
 const addressed = () => decodeURIComponent(location.hash.split("&scenario=")[1] ?? "");
 
@@ -539,6 +539,11 @@ const PARTS = {
     verify(element("example").options.length > 8, "examples");
     await choose("example", "1");
     verify(text.value.includes("Arch of 6 m span") && text.value.includes("-0.8"), text.value);
+    const ofMap = [...element("example").options].find(({ textContent }) => textContent === "Which pulses overturn it?").value;
+    await choose("example", ofMap);
+    await until(() => page.study?.files["map.csv"] || element("study-status").textContent.includes("valid"), "a map");
+    verify(page.study.files["map.csv"]?.startsWith("duration_s,amplitude_g"), `${Object.keys(page.study.files).join()} ${element("study-status").textContent}`);
+    await choose("example", "1");
 
     // A fall is drawn as large as it is.
     await afterwards(() => page.edit(`${text.value}# again\n`), "the fall again");

@@ -143,7 +143,8 @@ function showScenario(scenario) {
   choose(find("ground"), record ? `record:${record}` : last.ground, record ? `Record: ${record}` : last.ground, !scenario.ground || canChange(`ground.${last.ground}`));
   const model = (last.model = ["free_hinges", "elastic_joints"].find(has) ?? "");
   choose(find("model"), model, model, !model || canChange(model));
-  find("about-model").textContent = MODELS.find(([one]) => one === model)[3];
+  const isBlock = kind === "column" && !model;
+  find("about-model").textContent = isBlock ? "One rigid block, which rocks about its edges and loses energy when it hits its base." : MODELS.find(([one]) => one === model)[3];
   find("model").options[0].textContent = kind === "column" ? "One block" : MODELS[0][1];
   friction.hidden = !model;
   slips.checked = Boolean(model && scenario[model].friction_coefficient);

@@ -6,9 +6,9 @@ const NOT_REPEATED = "Not repeated yet: no verdict.\nThis is one history. Its re
 let askRun;
 let changes = 0;
 
-/** Shows the answer: its first line as the headline, the others below it. */
+/** Shows the answer: its first line as the headline, the others below it. Lines that the program has broken are whole here. */
 function sayAnswer(words, isFinal) {
-  const [headline, ...more] = words.split("\n").map((line) => line.trim());
+  const [headline, ...more] = words.replace(/\n {4,}/g, " ").split("\n").map((line) => line.trim());
   // Screen readers read what changes.
   if (find("answer").textContent !== headline) find("answer").textContent = headline;
   find("answer").classList.toggle("open", !isFinal);
