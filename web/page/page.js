@@ -77,7 +77,14 @@ find("refused")?.remove();
 try {
   const module = await compile();
   const work = (part) => ["status", "progress", "stop"].map((name) => find(`${part}${name}`));
-  askRun = createQueue(module, work(""), { read: showScenario, stopped: () => sayAnswer(STOPPED, false) });
+  askRun = createQueue(module, work(""), {
+    read: showScenario,
+    slow() {
+      markStale(true);
+      sayAnswer(NOT_COMPUTED, false);
+    },
+    stopped: () => sayAnswer(STOPPED, false),
+  });
   askStudy = createQueue(module, work("study-"));
   askFile = createQueue(module, work("save-"));
   startHelpers(module);

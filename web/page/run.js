@@ -1,6 +1,7 @@
 // The history: its headline, its picture and its curves, which are those of the report of the program.
 
 const STOPPED = "Stopped before the repetitions: no verdict.";
+const NOT_COMPUTED = "Not computed yet: no verdict.";
 const NOT_REPEATED = "Not repeated yet: no verdict.\nThis is one history. Its repetitions with other steps, and its mirror image, decide whether its outcome is certain: they follow once you pause.";
 
 let askRun;
