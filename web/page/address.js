@@ -47,21 +47,33 @@ function showSteps(count) {
   find("undo").disabled = count === 0;
 }
 
+/** Writes an entry of the history of the browser, by `pushState` or `replaceState`. Hosts of frames may refuse it: there, changes have no address. */
+function write(by, address) {
+  try {
+    history[by]({ steps: steps.undone }, "", address);
+  } catch (error) {
+    if (error.name !== "SecurityError") throw error;
+    showSteps(0);
+  }
+}
+
 /** Keeps the present text in the address. Returns true if a new step begins. Without a source each change is a step. */
 function keepAddress(source) {
   const now = performance.now();
   const goesOn = source !== null && source === steps.source && now - steps.time_ms < PAUSE_MS;
   Object.assign(steps, { source, time_ms: now });
   const address = addressOf(find("text").value);
-  const put = () => history.replaceState({ steps: steps.undone }, "", address);
+  sayOfLink("");
+  const put = () => write("replaceState", address);
   // Browsers refuse many changes of the address in a row.
   if (goesOn) {
     clearTimeout(steps.later?.timer);
     steps.later = { put, timer: setTimeout(put, 200) };
   } else {
     putNow();
+    if (address === (location.hash || location.pathname + location.search)) return false;
     showSteps(steps.undone + 1);
-    history.pushState({ steps: steps.undone }, "", address);
+    write("pushState", address);
   }
   return !goesOn;
 }
@@ -96,8 +108,9 @@ addEventListener("popstate", ({ state }) => {
   clearTimeout(steps.later?.timer);
   Object.assign(steps, { source: null, later: null });
   // A link that was opened in this page is a step of its own.
-  if (!state) history.replaceState({ steps: steps.undone + 1 }, "");
-  showSteps(history.state.steps);
+  showSteps(state?.steps ?? steps.undone + 1);
+  if (!state) write("replaceState");
   find("text").value = textOfAddress();
+  before = shown;
   computeRun();
 });

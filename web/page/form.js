@@ -90,13 +90,16 @@ function choose(select, name, label, canChange) {
 /** Begins the name of a record among the pulses. */
 const RECORD = "ground.record:";
 
+/** Returns the name of the present ground motion: its table, and for a record its file. */
+const groundName = () => (last.ground === "record" ? RECORD + last.scenario.ground.record.file : `ground.${last.ground}`);
+
 /** The texts of tables that choices have removed, by the choice: they return with it. */
 const left = {};
 
 /** Replaces the tables of one choice by those of another one, to which it brings some keys that both have. */
 function exchange(text, tables, [from, to], replacement, keys) {
   const { removed } = withoutTables(text, tables, "");
-  if (removed.startsWith("[") && (!from || hasTable(removed, from))) left[from] = removed;
+  if (removed.startsWith("[") && (!from || hasTable(removed, from.split(":")[0]))) left[from] = removed;
   const given = keys.filter((key) => parsed(text).some(({ path }) => path === `${from}.${key}`));
   const bring = (now, key) => withValue(now, `${to}.${key}`, JSON.stringify(valueOf(last.scenario, `${from}.${key}`)));
   return withTable(text, tables, to ? given.reduce(bring, left[to] ?? replacement) : (left[to] ?? replacement));
@@ -111,12 +114,11 @@ find("structure").addEventListener("change", () => {
 });
 find("ground").addEventListener("change", () => {
   const text = find("text").value;
-  const kinds = [last.ground, find("ground").value];
-  const [from, to] = kinds.map((name) => `ground.${name}`);
+  const [from, to] = [groundName(), `ground.${find("ground").value}`];
   const all = groundTables(text);
   if (to.startsWith(RECORD)) return useRecord(to.slice(RECORD.length));
   // Tables of errors go as well.
-  if (from !== "ground.record" && all.join() === from) return edit(withPulse(text, ...kinds));
+  if (all.join() === from) return edit(withPulse(text, last.ground, find("ground").value));
   edit(exchange(text, all, [from, to], `[${to}]\namplitude_g = -0.35\nduration_s = 0.3\n`, ["start_s"]));
 });
 find("model").addEventListener("change", () => {
@@ -141,7 +143,8 @@ function showScenario(scenario) {
   choose(find("ground"), record ? `record:${record}` : last.ground, record ? `Record: ${record}` : last.ground, !scenario.ground || canChange(`ground.${last.ground}`));
   const model = (last.model = ["free_hinges", "elastic_joints"].find(has) ?? "");
   choose(find("model"), model, model, !model || canChange(model));
-  find("about-model").textContent = MODELS.find(([one]) => one === model)[3];
+  const isBlock = kind === "column" && !model;
+  find("about-model").textContent = isBlock ? "One rigid block, which rocks about its edges and loses energy when it hits its base." : MODELS.find(([one]) => one === model)[3];
   find("model").options[0].textContent = kind === "column" ? "One block" : MODELS[0][1];
   friction.hidden = !model;
   slips.checked = Boolean(model && scenario[model].friction_coefficient);

@@ -77,12 +77,19 @@ find("refused")?.remove();
 try {
   const module = await compile();
   const work = (part) => ["status", "progress", "stop"].map((name) => find(`${part}${name}`));
-  askRun = createQueue(module, work(""), { read: showScenario, stopped: () => sayAnswer(STOPPED, false) });
+  askRun = createQueue(module, work(""), {
+    read: showScenario,
+    slow() {
+      markStale(true);
+      sayAnswer(NOT_COMPUTED, false);
+    },
+    stopped: () => sayAnswer(STOPPED, false),
+  });
   askStudy = createQueue(module, work("study-"));
   askFile = createQueue(module, work("save-"));
   startHelpers(module);
   showSteps(steps.undone);
-  history.replaceState({ steps: steps.undone }, "");
+  write("replaceState");
   find("text").value = textOfAddress();
   await computeRun();
 } catch (error) {

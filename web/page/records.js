@@ -4,17 +4,12 @@ const MOST_BYTES = 16 << 20;
 /** Names and contents of the record files that the reader has added. */
 const files = {};
 
-/** Returns the text in which a record is the ground motion. */
-function withRecord(text, name) {
-  const columns = TABLE_FILE.test(name) ? COLUMNS : "";
-  const table = `[ground.record]\nfile = ${JSON.stringify(name)}\n${columns}scale = 1.0\n`;
-  return exchange(text, groundTables(text), [`ground.${last.ground}`, "ground.record"], table, []);
-}
+const recordTable = (name) => `[ground.record]\nfile = ${JSON.stringify(name)}\n${TABLE_FILE.test(name) ? COLUMNS : ""}scale = 1.0\n`;
 
+/** Makes a record the ground motion. */
 function useRecord(name) {
-  // Another record that was left does not return in its place.
-  delete left["ground.record"];
-  return edit(withRecord(find("text").value, name));
+  const text = find("text").value;
+  return edit(exchange(text, groundTables(text), [groundName(), RECORD + name], recordTable(name), []));
 }
 
 /** Returns the reason for which a file is refused, or "". `contents` is its text. */
@@ -22,7 +17,7 @@ async function refusal({ name, size }, contents) {
   if (size > MOST_BYTES) return `it has ${(size / 1048576).toFixed(0)} MB; this page takes files of at most 16 MB: use the program, or cut the file`;
   if (contents.includes("\u0000")) return "it is not a text, so no record that this page reads";
   const isScenario = name.endsWith(".toml");
-  const text = isScenario ? contents : `${START.slice(0, START.indexOf("[ground"))}${withRecord("", name)}`;
+  const text = isScenario ? contents : START.slice(0, START.indexOf("[ground")) + recordTable(name);
   const answer = await askFile({ scenario: text, files: { ...files, [name]: contents } });
   const wrong = answer?.errors[0]?.message ?? "";
   // A scenario may name files that are not here yet, and the reader gives the columns of a table.

@@ -1,14 +1,15 @@
 // The history: its headline, its picture and its curves, which are those of the report of the program.
 
 const STOPPED = "Stopped before the repetitions: no verdict.";
-const NOT_REPEATED = "Not repeated yet: no verdict.";
+const NOT_COMPUTED = "Not computed yet: no verdict.";
+const NOT_REPEATED = "Not repeated yet: no verdict.\nThis is one history. Its repetitions with other steps, and its mirror image, decide whether its outcome is certain: they follow once you pause.";
 
 let askRun;
 let changes = 0;
 
-/** Shows the answer: its first line as the headline, the others below it. */
+/** Shows the answer: its first line as the headline, the others below it. Lines that the program has broken are whole here. */
 function sayAnswer(words, isFinal) {
-  const [headline, ...more] = words.split("\n").map((line) => line.trim());
+  const [headline, ...more] = words.replace(/\n {4,}/g, " ").split("\n").map((line) => line.trim());
   // Screen readers read what changes.
   if (find("answer").textContent !== headline) find("answer").textContent = headline;
   find("answer").classList.toggle("open", !isFinal);

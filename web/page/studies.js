@@ -130,6 +130,10 @@ async function computeStudy(study) {
   find("study-status").textContent = "";
   const text = find("text").value;
   showSaves({});
+  // The text may be new: a map needs its scenario.
+  const read = await askFile({ scenario: text, files });
+  if (own !== studies) return;
+  if (read?.scenario) showScenario(read.scenario);
   for await (const answer of studyAnswers(study, text)) {
     if (!answer || own !== studies) return;
     showStudyErrors(study, answer.errors);

@@ -37,8 +37,8 @@ function estimate(began, done, all) {
 }
 
 /** Makes a queue of one request at work and the newest one waiting, with elements that show long work. For a run, `read` receives its scenario before its
- * result, and `stopped` hears that the reader has stopped it. */
-function createQueue(module, [status, bar, stop], { read, stopped } = {}) {
+ * result; `slow` hears that its first picture takes long, and `stopped` that the reader has stopped it. */
+function createQueue(module, [status, bar, stop], { read, slow, stopped } = {}) {
   /** Repetitions have a worker of their own: they may be stopped, and a new worker is slow at first. */
   const workers = new Map();
   const repeats = () => work.request.no_repeat === false;
@@ -77,7 +77,7 @@ function createQueue(module, [status, bar, stop], { read, stopped } = {}) {
       stop.hidden = false;
       status.textContent = "Computing…";
       // While a history is completed or repeated, its picture is the present one.
-      if (work.request.sways_only) markStale(true);
+      if (work.request.sways_only) slow?.();
     }, 400);
   }
 
