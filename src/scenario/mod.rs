@@ -384,6 +384,12 @@ impl Scenario {
         if let Some(named) = named.flatten() {
             suite::check_directions(table, certain.simulation.direction, named)?;
             certain = certain.in_directions(named);
+        } else if let Some(suite) = &certain.suite
+            && suite.levels.is_none()
+            && !table.has_key_in("simulation", "direction")
+        {
+            // Records that act as they are are not mirrored unless it is asked for.
+            certain = certain.in_directions(Directions::AsGiven);
         }
         certain.ground_motion = Arc::new(certain.move_both_feet(ground.motion));
         let end_s = certain.request().end_s;

@@ -14,8 +14,8 @@
 //! scale = 2.0                                # or peak_g
 //! ```
 //!
-//! Every record acts on the structure at every level: multiplied by each factor of `scales`, or scaled to each peak of `peaks_g`. `[ground]` is
-//! not used.
+//! Every record acts on the structure at every level: multiplied by each factor of `scales`, or scaled to each peak of `peaks_g`. Without both,
+//! every record acts once, as it is. `[ground]` is not used.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -83,8 +83,8 @@ pub struct Suite {
     pub has_entries: bool,
     /// Intensity measure of the levels.
     pub measure: Measure,
-    /// The levels to which each record is scaled, above 0.
-    pub levels: Sequence,
+    /// The levels to which each record is scaled, above 0; `None`: each record acts once, as it is.
+    pub levels: Option<Sequence>,
     /// The oscillator whose spectral acceleration is a measure of intensity.
     pub spectral: Spectral,
 }
@@ -141,8 +141,12 @@ impl Suite {
             let level = levels.values().last().copied();
             level.map(|level| measure.scaling(level))
         });
-        let accept = |series: &Series| match strongest.zip(simulation) {
-            Some((strongest, simulation)) => check_record(series, strongest, simulation),
+        let accept = |series: &Series| match simulation {
+            Some(simulation) => check_record(
+                series,
+                strongest.unwrap_or(Scaling::Factor(1.0)),
+                simulation,
+            ),
             None => Ok(()),
         };
         let entry = |entry: &mut Table<'_>| read_entry(entry, strongest, accept);
@@ -152,13 +156,15 @@ impl Suite {
                 &[RECORDS, ENTRIES],
                 Some("lacks `records`: give a string or an array of at least one, or entries [[suite.record]]"),
             ),
-            OneOf(&["scales", "peaks_g"], None),
+            AtMostOne(&["scales", "peaks_g"], GIVE_ONE),
         ]);
         let patterns: Vec<_> = patterns.map(|found| (RECORDS, found)).into_iter().collect();
         let listing = RecordListing::read(table, &patterns, format, &entries);
         related.and(table.check_faultless())?;
-        let (measure, levels) = levels.into_iter().next().ok_or(FaultRecorded)?;
-        let (count, files) = (levels.values().len(), listing.len() + entries.len());
+        let (measure, levels) = levels.into_iter().next().unzip();
+        let measure = measure.unwrap_or(Measure::Scale);
+        let count = level_values(levels.as_ref()).len();
+        let files = listing.len() + entries.len();
         let directions = named.or(simulation.map(|simulation| simulation.direction));
         let signs = 1 + usize::from(directions == Some(Directions::Both));
         let cases = files * signs * count;
@@ -194,6 +200,11 @@ impl Suite {
             spectral,
         };
         Ok((suite, named))
+    }
+
+    /// Levels of the cases, in the measure of the suite.
+    pub fn level_values(&self) -> Vec<f64> {
+        level_values(self.levels.as_ref())
     }
 
     /// Each record with a peak of 1 g, as the ground motion of a scenario.
@@ -239,8 +250,9 @@ impl Serialize for Suite {
             true => Map::from_iter([(ENTRIES.to_owned(), json!(self.records))]),
             false => table_entries(&[(RECORDS, &self.records)]),
         };
+        let levels = self.levels.iter();
+        let levels = levels.map(|levels| (self.measure.key().to_owned(), json!(levels)));
         let own = [
-            (self.measure.key(), json!(self.levels)),
             (SPECTRAL_PERIOD_S, json!(self.spectral.period_s)),
             (
                 SPECTRAL_DAMPING_PERCENT,
@@ -248,8 +260,13 @@ impl Serialize for Suite {
             ),
         ]
         .map(|(key, value)| (key.to_owned(), value));
-        serializer.collect_map(records.into_iter().chain(own))
+        serializer.collect_map(records.into_iter().chain(levels).chain(own))
     }
+}
+
+/// Levels of the cases; 1 without levels.
+fn level_values(levels: Option<&Sequence>) -> Vec<f64> {
+    levels.map_or_else(|| vec![1.0], Sequence::values)
 }
 
 /// Directions that `both_signs` names.

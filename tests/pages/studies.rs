@@ -335,6 +335,19 @@ fn a_record_named_like_a_number_keeps_its_name() {
 }
 
 #[test]
+fn a_record_that_acts_once_is_run_by_its_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write_suite(at, "");
+    let text = fs::read_to_string(at.join("s.toml")).unwrap();
+    let levels = |line: &&str| line.starts_with("peaks_g") || line.starts_with("scales");
+    let as_they_are: Vec<&str> = text.lines().filter(|line| !levels(line)).collect();
+    fs::write(at.join("s.toml"), as_they_are.join("\n")).unwrap();
+    let found = page(at, &["suite", "s.toml"], "suite.html", "suite.csv");
+    found.assert_histories(at);
+}
+
+#[test]
 fn a_case_of_a_suite_is_run_by_its_command() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();

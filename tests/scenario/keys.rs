@@ -579,7 +579,6 @@ fn every_relation_between_keys_is_checked() {
         (format!("{half}{sine}[ground.right]\n"), one),
         (format!("{half}{sine}[ground.right]\ndelay_s = 1\napparent_velocity_m_s = 100\n"), &not_with("apparent_velocity_m_s", "delay_s")),
         (format!("{record}scale = 2\npeak_g = 0.3\n"), &not_with("peak_g", "scale")),
-        ("[suite]\nrecords = 'a.at2'\n".to_owned(), one),
         ("[suite]\nrecords = 'a.at2'\nscales = [1]\npeaks_g = [1]\n".to_owned(), &not_with("peaks_g", "scales")),
     ] {
         refused(&format!("{arch}[free_hinges]\n{tables}"), words);

@@ -72,7 +72,8 @@ fn read(path: &Path) -> String {
 fn rows(folder: &Path) -> Vec<Row> {
     let table = Table::read(folder.join("suite.csv"));
     let columns = "record,sign,scale,peak_g,outcome,overturning_sway,impacts,impacts_before_overturning,\
-                   outcome_time_s,peak_rotation_over_critical,energy_defect_ratio,thrust_excess_ratio,friction_demand";
+                   outcome_time_s,peak_rotation_over_critical,energy_defect_ratio,thrust_excess_ratio,friction_demand,\
+                   peak_velocity_m_s,spectral_acceleration_g,arias_m_s";
     assert_eq!(table.header.join(","), columns);
     table.rows
 }
@@ -1037,11 +1038,6 @@ fn faults_of_the_table_have_places() {
         "recrods = 'x'\nboth_signs = 1",
         &[
             (0, 1, &["[suite] lacks `records`", "a string or an array"]),
-            (
-                0,
-                1,
-                &["[suite] needs exactly one of the keys scales, peaks_g"],
-            ),
             (1, 1, &["did you mean `records`?"]),
             (
                 2,
@@ -1056,7 +1052,10 @@ fn faults_of_the_table_have_places() {
         &[(
             3,
             11,
-            &["`peaks_g` cannot be combined with `scales`", "exactly one"],
+            &[
+                "`peaks_g` cannot be combined with `scales`",
+                "give one of them",
+            ],
         )],
     );
     assert_faults(
@@ -1619,4 +1618,137 @@ fn distributions_of_models_are_compared() {
         let rows = table.rows.iter().filter(|row| row["model"] == *words);
         assert_eq!(survived.count(), rows.count(), "{name}");
     }
+}
+
+/// Without levels each record acts once, as it is and as given: outcomes are those of runs with `[ground.record]`, and the picture has a circle for each
+/// at the measures of a sine in closed form.
+#[test]
+fn records_act_once_without_levels() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let gravity = 9.81;
+    let sines = [(0.3, 0.4), (0.5, 0.8), (0.9, 0.5), (0.6, 1.6), (0.1, 1.0)];
+    for (at, (peak_g, duration_s)) in sines.into_iter().enumerate() {
+        let line = |sample: u32| {
+            let time_s = duration_s * f64::from(sample) / 400.0;
+            let sine = (2.0 * PI * time_s / duration_s).sin();
+            format!("{time_s:.6},{:.9}\n", peak_g * sine)
+        };
+        let table: String = (0..=400).map(line).collect();
+        write(folder, &format!("sine-{at}.csv"), &table);
+    }
+    let suite = "[suite]\nrecords = 'sine-*.csv'\nunit = 'g'\n";
+    write(folder, "s.toml", &format!("{COLUMN}{suite}"));
+    let said = done(folder, &["suite", "s.toml", "--out", "o", "--details"]);
+    let cases = rows(&folder.join("o"));
+    assert_eq!(cases.len(), sines.len());
+    let runs = sines.into_iter().enumerate().map(|(at, _)| {
+        let text = format!(
+            "{COLUMN}direction = 'as_given'\n[ground.record]\nfile = 'sine-{at}.csv'\nunit = 'g'\n"
+        );
+        write(folder, "run.toml", &text);
+        done(folder, &["run", "run.toml", "--out", "r", "--quiet"]);
+        json(&folder.join("r/summary.json"))
+    });
+    let runs: Vec<Value> = runs.collect();
+    for ((case, run), (peak_g, duration_s)) in cases.iter().zip(&runs).zip(sines) {
+        assert_eq!(run["outcome"], case["outcome"], "{case:?}");
+        assert_eq!([&case["sign"], &case["scale"]], ["1", "1.0"]);
+        assert!((case.number("peak_g") / peak_g - 1.0).abs() < 1e-6);
+        let velocity_m_s = peak_g * gravity * duration_s / PI;
+        assert!((case.number("peak_velocity_m_s") / velocity_m_s - 1.0).abs() < 1e-4);
+    }
+    let overturned = |run: &&Value| run["outcome"] == "overturned";
+    let overturned = runs.iter().filter(overturned).count();
+    assert!(0 < overturned && overturned < sines.len());
+
+    let report = json(&folder.join("o/fragility.json"));
+    let found = &report["as_recorded"];
+    assert_eq!(found["records_that_overturn"], overturned);
+    assert_eq!(found["share"], overturned as f64 / sines.len() as f64);
+    assert_eq!(found["records_in_doubt"], 0);
+    assert!(report["median"].is_null() && report["survivals"].as_array().unwrap().is_empty());
+    assert_eq!(report["scenario"]["simulation"]["direction"], "as_given");
+    let quote = report["to_quote"].as_str().unwrap();
+    let percent = 100.0 * overturned as f64 / sines.len() as f64;
+    let answer = format!("{overturned} of 5 records ({percent:.1} %) overturn it as they are");
+    assert!(quote.starts_with(&answer), "{quote}");
+    assert!(said.contains(&answer), "{said}");
+    for absent in ["survives up to", "median", "of the levels tried"] {
+        assert!(!said.contains(absent), "{said}");
+    }
+    for absent in [
+        "fragility.csv",
+        "ida.svg",
+        "ida.csv",
+        "capacities.csv",
+        "intensity.csv",
+    ] {
+        assert!(!folder.join("o").join(absent).exists(), "{absent}");
+    }
+
+    let picture = read(&folder.join("o/suite.svg"));
+    let picture = Document::parse(&picture).unwrap();
+    let circles = |name: &str| {
+        let nodes = picture.descendants();
+        let named = nodes.filter(|node| node.attribute("data-name") == Some(name));
+        let at = |node: roxmltree::Node<'_, '_>| {
+            ["cx", "cy"].map(|of| node.attribute(of).unwrap().parse::<f64>().unwrap())
+        };
+        named.map(at).collect::<Vec<_>>()
+    };
+    assert_eq!(circles("overturns").len(), overturned);
+    let all = [circles("survives"), circles("overturns")].concat();
+    let own: Vec<_> = sines.into_iter().enumerate().collect();
+    let (survive, overturn): (Vec<_>, Vec<_>) = own
+        .into_iter()
+        .partition(|(at, _)| runs[*at]["outcome"] != "overturned");
+    let places = [survive, overturn].concat();
+    // Both axes are logarithmic: distances on the sheet are proportional to those of the logarithms.
+    for (axis, sign) in [(0, 1.0), (1, -1.0)] {
+        let value = |at: usize| match places[at].1 {
+            (peak_g, _) if axis == 0 => peak_g.ln(),
+            (_, duration_s) => (duration_s / PI).ln(),
+        };
+        let px = |at: usize| sign * all[at][axis];
+        let (low, high) = (0..5).fold((0, 0), |(low, high), at| {
+            let low = if value(at) < value(low) { at } else { low };
+            (low, if value(at) > value(high) { at } else { high })
+        });
+        let per = (px(high) - px(low)) / (value(high) - value(low));
+        for at in 0..5 {
+            let expected = px(low) + per * (value(at) - value(low));
+            assert!((px(at) - expected).abs() < 0.1, "{axis} {at}");
+        }
+    }
+
+    // In both directions a record overturns if one of its cases does.
+    let load = "[[load]]\nmass_kg = 800.0\nx_m = 0.2\n";
+    write(
+        folder,
+        "both.toml",
+        &format!("{COLUMN}direction = 'both'\n{load}{suite}"),
+    );
+    done(folder, &["suite", "both.toml", "--out", "both", "--quiet"]);
+    let cases = rows(&folder.join("both"));
+    assert_eq!(cases.len(), 2 * sines.len());
+    let fallen = cases.iter().filter(|case| case["outcome"] == "overturned");
+    let records: BTreeSet<&str> = fallen.map(|case| case["record"].as_str()).collect();
+    let report = json(&folder.join("both/fragility.json"));
+    assert_eq!(
+        report["as_recorded"]["records_that_overturn"],
+        records.len()
+    );
+    assert!(
+        report["to_quote"]
+            .as_str()
+            .unwrap()
+            .contains("in at least one direction")
+    );
+
+    // Samples need levels.
+    let uncertain = "[uncertain]\n'column.width_m' = { deviation = 0.01 }\n";
+    write(folder, "u.toml", &format!("{COLUMN}{suite}{uncertain}"));
+    let said = refused(folder, &["suite", "u.toml"], &[]);
+    assert!(said.contains("give `scales` or `peaks_g`"), "{said}");
 }

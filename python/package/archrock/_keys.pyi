@@ -1495,6 +1495,7 @@ class SuiteKeys:
     log_likelihood: float | None
     no_fit: str | None
     records: int
+    as_recorded: SuiteAsRecorded | None
     cases: int
     overturned: int
     uncertain: int
@@ -1582,6 +1583,14 @@ class SuiteUnlikelyKeys:
     likely: str | None
 
 class SuiteUnlikely(Summary, SuiteUnlikelyKeys):
+    pass
+
+class SuiteAsRecordedKeys:
+    records_that_overturn: int
+    share: float
+    records_in_doubt: int
+
+class SuiteAsRecorded(Summary, SuiteAsRecordedKeys):
     pass
 
 class SuiteLevelsKeys:

@@ -320,7 +320,7 @@ class ThresholdAlong(ThresholdAlongResult, Results):
 
 
 class Suite(SuiteResult, Results):
-    """A suite of records, and the fragility curve of its cases."""
+    """A suite of records, and the fragility curve of its cases; without levels each record acts once, as it is, and there is no curve."""
 
     __slots__ = ()
 
@@ -341,10 +341,28 @@ class Suite(SuiteResult, Results):
         """Whether overturning is uncertain, one entry for each row of ``suite.csv``."""
         return np.asarray(self.columns()["outcome"] == "uncertain")
 
+    def _plot_outcomes(self, ax: Axes) -> Axes:
+        table = self.columns()
+        gravity = self.summary["scenario"]["simulation"]["gravity_m_s2"]
+        ratios = table["peak_velocity_m_s"] / (table["peak_g"] * gravity)
+        overturned, uncertain = table["outcome"] == "overturned", self.uncertain
+        for label, marker, chosen in (
+            ("overturns", "x", overturned),
+            ("uncertain", "D", uncertain),
+            ("survives, or no verdict", "o", ~(overturned | uncertain)),
+        ):
+            ax.scatter(table["peak_g"][chosen], ratios[chosen], marker=marker, label=label)
+        ax.set(xscale="log", yscale="log")
+        ax.set_xlabel("peak ground acceleration (g)")
+        ax.set_ylabel("peak velocity / peak acceleration (s)")
+        ax.legend()
+        return ax
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """The fraction of cases that overturn over the intensity, the curve and its 95 % band. Needs matplotlib.
 
-        Intensities are peak accelerations in g, or factors on the records, as in ``fragility.csv``.
+        Intensities are peak accelerations in g, or factors on the records, as in ``fragility.csv``. Without levels: the outcomes of
+        the records over two measures.
 
         Args:
             ax: axes to draw into; ``None``: those of a new figure.
@@ -353,6 +371,8 @@ class Suite(SuiteResult, Results):
             The axes.
         """
         ax = _axes(ax)
+        if self.summary["as_recorded"] is not None:
+            return self._plot_outcomes(ax)
         table = self.fragility
         intensity = next(iter(table))
         levels = table[intensity]
@@ -771,6 +791,9 @@ def suite_scenario(
         direction = "both" if both_signs else "as_given"
         if settings.setdefault("direction", direction) != direction:
             raise ValueError(f"`both_signs` is the older name of direction={direction!r}: leave it out")
+    if peaks_g is None and scales is None:
+        # Without levels the default is that of the scenario file.
+        settings.setdefault("direction", "as_given")
     return Scenario.of(structure, suite=table, files=files, **settings)
 
 
@@ -791,7 +814,7 @@ def suite(
         of: the structure, or a scenario with a table ``[suite]``, which gives everything else.
         records: the records, each with its own name.
         peaks_g: increasing peak accelerations to which each record is scaled; or give ``scales``, which multiply the
-            scaling of the records.
+            scaling of the records. Without both, each record acts once, as it is, and as given unless ``direction`` is named.
         scales: increasing factors on each record.
         both_signs: older name of ``direction``: true is ``"both"``, false is ``"as_given"``; ``None``: as ``direction``.
         threads: as for :func:`overturning_map`.

@@ -159,7 +159,9 @@ impl Scenario {
             });
             all.extend(axis.and_then(|axis| self.axis_strengths(&axis, ground)));
         }
-        if let Some(suite) = &self.suite {
+        if let Some(suite) = &self.suite
+            && let Some(levels) = &suite.levels
+        {
             let peaks_g = suite
                 .records
                 .iter()
@@ -168,8 +170,8 @@ impl Scenario {
                 Measure::Scale => ("suite.scales", peaks_g.fold(0.0, f64::max)),
                 Measure::PeakG => ("suite.peaks_g", 1.0),
             };
-            let levels = suite.levels.values();
             let question = "are its levels in units of gravity?";
+            let levels = levels.values();
             all.extend(Strengths::of(key, ("the suite", question), &levels, unit_g));
         }
         if let Some(factor) = study.factor {

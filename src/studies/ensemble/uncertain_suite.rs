@@ -38,6 +38,9 @@ pub struct Capacities<'a> {
     levels: Vec<f64>,
 }
 
+const NO_LEVELS: &str =
+    "[suite] has no levels, among which each sample overturns; give `scales` or `peaks_g`";
+
 /// The first edge of a sample under each record; in both directions, the mirrored record follows its record. A sample without a second direction has
 /// the same edge twice.
 type EdgePerRecord = Vec<FirstEdge>;
@@ -53,7 +56,7 @@ impl<'a> Capacities<'a> {
         let suite = suite.ok_or("the scenario has no [suite], whose records shake the samples")?;
         Ok(Self {
             cases: SampleCases::of(scenario)?,
-            levels: suite.levels.values(),
+            levels: suite.levels.as_ref().ok_or(NO_LEVELS)?.values(),
             suite: suite.clone(),
             directions: scenario.simulation.direction,
         })

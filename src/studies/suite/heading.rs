@@ -8,7 +8,10 @@ use crate::argument::plain;
 use crate::dynamics::{Direction, Directions};
 use crate::output::caption::caption;
 use crate::output::{Figure, Origin, Scale};
-use crate::scenario::{Measure, ModelKind, Scenario, Spacing, Spectral, Suite, UnitGround, Varied};
+use crate::scenario::{
+    Measure, ModelKind, Scenario, Sequence, Spacing, Spectral, Suite, UnitGround, Varied,
+};
+use crate::studies::format_edge;
 use crate::studies::page::{CaseScenario, PageCases};
 use crate::studies::quotable::{SlipWords, restitution_in_words};
 use crate::studies::report::Warnings;
@@ -24,7 +27,8 @@ pub struct Heading {
     pub(super) is_arch: bool,
     /// The measure of the intensities.
     pub measure: Measure,
-    spacing: Spacing,
+    /// Spacing of the levels; `None` if each record acts once, as it is.
+    spacing: Option<Spacing>,
     /// True if each record acts in both directions, in cases of their own.
     has_both: bool,
     pub(super) directions: Directions,
@@ -55,7 +59,7 @@ impl Heading {
             model: scenario.motion.kind,
             is_arch: scenario.structure.has_horizontal_thrust(),
             measure: suite.measure,
-            spacing: suite.levels.spacing(),
+            spacing: suite.levels.as_ref().map(Sequence::spacing),
             has_both,
             directions: scenario.simulation.direction,
             spectral: suite.spectral,
@@ -78,6 +82,17 @@ impl Heading {
         self.title.as_deref().unwrap_or(otherwise)
     }
 
+    /// True if each record acts once, as it is.
+    pub(super) const fn is_as_recorded(&self) -> bool {
+        self.spacing.is_none()
+    }
+
+    /// Gravity of the scenario, which has all defaults.
+    pub(super) fn gravity_m_s2(&self) -> f64 {
+        let own = self.scenario["simulation"]["gravity_m_s2"].as_f64();
+        own.unwrap_or(f64::NAN)
+    }
+
     /// Axis of the intensities: its label, and the scale from a little below the lowest level to a little above the highest.
     pub(super) fn axis(&self, results: &SuiteFragility, figure: Figure) -> (&'static str, Scale) {
         let ends = [results.levels.first(), results.levels.last()];
@@ -87,11 +102,11 @@ impl Heading {
             Measure::PeakG => "peak ground acceleration (g)",
         };
         let scale = match self.spacing {
-            Spacing::Logarithmic => {
+            Some(Spacing::Logarithmic) => {
                 let margin = libm::pow(high / low, 0.05);
                 Scale::logarithmic(low / margin, high * margin)
             }
-            Spacing::Linear => Scale::exactly(0.0, 1.05 * high, figure.ticks(8)),
+            _ => Scale::exactly(0.0, 1.05 * high, figure.ticks(8)),
         };
         (label, scale)
     }
@@ -130,7 +145,10 @@ impl Heading {
 
     /// Level of a case in words.
     pub(super) fn level(&self, case: &CaseRow) -> String {
-        let level = plain(case.level(self.measure));
-        format!("{} {level}", self.measure.name())
+        let (name, level) = match self.is_as_recorded() {
+            true => ("peak_g", format_edge(case.peak_g)),
+            false => (self.measure.name(), plain(case.level(self.measure))),
+        };
+        format!("{name} {level}")
     }
 }

@@ -3,6 +3,7 @@
 mod fragility;
 mod heading;
 mod ida;
+mod outcomes;
 mod picture;
 mod report;
 pub(super) mod strength;
@@ -27,7 +28,7 @@ use super::threshold::survival::{Survival, VerdictRange};
 use super::{NoAnswer, Results, Study, Style};
 use crate::bisection::{Width, bisect};
 use crate::dynamics::{Direction, Directions};
-use crate::output::OutputError;
+use crate::output::{OutputError, each};
 use crate::scenario::{Measure, Scenario, Suite};
 use crate::{Case, EndCondition, Model, Outcome};
 
@@ -87,6 +88,12 @@ impl CaseRow {
     /// Verdict; `None` if there is no history.
     pub fn verdict(&self) -> Option<Verdict> {
         self.result.as_ref().ok().map(Ending::verdict)
+    }
+
+    /// Intensities of the scaled record, in the order of [`MEASURES`] after the peak acceleration.
+    fn intensities(&self) -> [Option<f64>; 3] {
+        let strength = self.strength.as_ref();
+        each(strength.map(|strength| strength.at(self.scale)))
     }
 
     /// Probability of overturning; `None` if there is no history, or the history is incomplete.
@@ -159,7 +166,7 @@ impl<'a> RecordSuite<'a> {
             suite,
             directions: directions(scenario, suite, &*model),
             model,
-            levels: suite.levels.values(),
+            levels: suite.level_values(),
             strengths: strengths.collect(),
             lowest: OnceLock::new(),
         })
@@ -260,7 +267,7 @@ pub(super) fn directions(
 ) -> &'static [Direction] {
     let directions = scenario.simulation.direction;
     let first = directions.first();
-    let level = suite.levels.values().first().copied().unwrap_or(1.0);
+    let level = suite.level_values().first().copied().unwrap_or(1.0);
     let (ground, request) = case(scenario, suite, 0, level, first);
     match (directions.has_second(model, &ground, &request), first) {
         (true, _) => Direction::ALL,
@@ -338,8 +345,9 @@ impl RecordSuite<'_> {
     }
 
     /// Level below that of a case; for the lowest level, that at which the structure starts to move under its record. `None` if that is
-    /// unknown or higher.
+    /// unknown or higher, or if each record acts once, as it is.
     fn level_below(&self, index: usize) -> Option<f64> {
+        self.suite.levels.as_ref()?;
         if let Some(below) = (index % self.levels.len()).checked_sub(1) {
             return Some(self.levels[below]);
         }
@@ -399,10 +407,9 @@ impl RecordSuite<'_> {
             .as_ref()
             .is_ok_and(|own| own.verdict() == Verdict::Survives);
         let safe = edge.map_or(survives.then_some(level), |edge| edge.safe)?;
+        let below = self.level_below(index)?;
         let at = safe.min(self.find_lowest_edge());
-        self.level_below(index)
-            .is_some_and(|below| below < at)
-            .then_some(at)
+        (below < at).then_some(at)
     }
 
     /// Searches finely from `at` down to the level below. `None` if nothing is found; or if `at` does not survive, nor does the level below.

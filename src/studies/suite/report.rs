@@ -8,10 +8,11 @@ use super::fragility::{Fragility, NoFit};
 use super::ida::Fractiles;
 use super::strength::{Efficiency, MEASURES, RecordCapacity, efficiencies, warning_of_few_records};
 use super::{
-    CaseRow, Counts, FragilityRow, Heading, SuiteFragility, ida, picture, records_in_words,
+    CaseRow, Counts, FragilityRow, Heading, SuiteFragility, ida, outcomes, picture,
+    records_in_words,
 };
 use crate::argument::plain;
-use crate::dynamics::Direction;
+use crate::dynamics::{Direction, Directions};
 use crate::output::{Column, Figure, OutputError, Table, column, each, fields, list};
 use crate::scenario::{Measure, Spectral, shown};
 use crate::studies::ending::columns::{self, FAILED, yes_or_no};
@@ -75,6 +76,9 @@ pub struct SuiteSummary {
     curve: Curve,
     /// Number of records.
     records: usize,
+    /// The number of records that overturn the structure, if each acts once, as it is; null with levels.
+    #[serde(default)]
+    as_recorded: Option<AsRecorded>,
     #[serde(flatten)]
     counts: Counts,
     /// The levels that were tried.
@@ -103,6 +107,55 @@ pub struct SuiteSummary {
     with_uncertain_as_overturned: Option<Curve>,
     #[serde(flatten)]
     remarks: Remarks,
+}
+
+/// The number of records that overturn the structure as they are. In both directions a record overturns it if one of them does.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct AsRecorded {
+    /// Number of records that certainly overturn the structure.
+    records_that_overturn: usize,
+    /// Their share of all records.
+    share: f64,
+    /// Number of other records of which a case is uncertain or has no verdict.
+    records_in_doubt: usize,
+}
+
+impl AsRecorded {
+    fn of(results: &SuiteFragility) -> Self {
+        let (mut overturn, mut doubt, mut all) = (0, 0, 0);
+        for cases in results.cases.chunk_by(|a, b| a.record == b.record) {
+            let any = |is: fn(Option<Verdict>) -> bool| cases.iter().any(|case| is(case.verdict()));
+            let overturns = any(|verdict| verdict == Some(Verdict::Overturns));
+            let doubtful = any(|verdict| verdict != Some(Verdict::Survives));
+            all += 1;
+            overturn += usize::from(overturns);
+            doubt += usize::from(doubtful && !overturns);
+        }
+        Self {
+            records_that_overturn: overturn,
+            share: overturn as f64 / f64::from(all.max(1)),
+            records_in_doubt: doubt,
+        }
+    }
+
+    /// The answer in words.
+    fn in_words(self, records: usize, directions: Directions) -> String {
+        let overturn = match self.records_that_overturn {
+            1 => "overturns it as it is",
+            _ => "overturn it as they are",
+        };
+        let direction = match directions {
+            Directions::Both => " in at least one direction",
+            one => directions_in_words(one, Direction::AsGiven),
+        };
+        let doubt = match self.records_in_doubt {
+            0 => String::new(),
+            more => format!(", and {more} may (uncertain, or without a verdict)"),
+        };
+        let (count, share) = (self.records_that_overturn, 100.0 * self.share);
+        let records = records_in_words(records);
+        format!("{count} of {records} ({share:.1} %) {overturn}{direction}{doubt}")
+    }
 }
 
 /// The levels of a suite.
@@ -203,9 +256,14 @@ impl Heading {
     /// When a value is not finite.
     pub fn report(&self, rows: Vec<CaseRow>, figure: Figure) -> Result<Results, OutputError> {
         let results = SuiteFragility::new(self.measure, rows);
-        let capacities = results.capacities();
+        let as_recorded = self.is_as_recorded().then(|| AsRecorded::of(&results));
+        let of_levels = as_recorded.is_none();
+        let capacities = match of_levels {
+            true => results.capacities(),
+            false => Vec::new(),
+        };
         let remarks = self.remarks(&results);
-        let (answer, friction_demand) = self.answer(&results);
+        let (answer, friction_demand) = self.answer(&results, as_recorded);
         let friction = self.slip.condition(friction_demand, "suite FILE");
         let incomplete = remarks
             .incomplete_in_words()
@@ -221,7 +279,7 @@ impl Heading {
         let levels = Levels::of(&results);
         let curve = |found| Curve::of(found, &levels);
         let end = |end: usize| results.fits().nth(1 + end).map(curve);
-        let survivals = results.survivals().into_iter();
+        let survivals = results.survivals().into_iter().filter(|_| of_levels);
         let owned = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect();
         let report = SuiteSummary {
             program: env!("CARGO_PKG_NAME").to_owned(),
@@ -234,6 +292,7 @@ impl Heading {
             intensity: self.measure,
             curve: curve(&results.fit),
             records: results.record_count(),
+            as_recorded,
             counts: Counts::of(&results.cases.iter().collect::<Vec<_>>()),
             levels,
             survivals: survivals
@@ -264,11 +323,14 @@ impl Heading {
         let caption = captions.collect::<Vec<_>>().join("; ");
         let measures = &report.intensity_measures;
         let found = Results::of(FRAGILITY, &report)?;
-        let found = self
-            .with_tables(found, &results, (&capacities, measures))?
-            .with_file("suite.svg", picture::draw(figure, self, &results, &caption))
-            .with_file("ida.svg", ida::draw(figure, self, &results, &[]))
-            .with_file("peaks.svg", ida::draw_peaks(figure, self, &results));
+        let found = self.with_tables(found, &results, (&capacities, measures))?;
+        let found = match of_levels {
+            true => found
+                .with_file("suite.svg", picture::draw(figure, self, &results, &caption))
+                .with_file("ida.svg", ida::draw(figure, self, &results, &[])),
+            false => found.with_file("suite.svg", outcomes::draw(figure, self, &results, &[])),
+        };
+        let found = found.with_file("peaks.svg", ida::draw_peaks(figure, self, &results));
         Ok(Results {
             largest_rotations_rad: ida::rotations_rad(&results.cases),
             answer: Some(answer),
@@ -276,7 +338,7 @@ impl Heading {
         })
     }
 
-    /// Adds the tables, that of the cases first.
+    /// Adds the tables, that of the cases first. Without levels there are no capacities and fractions.
     fn with_tables(
         &self,
         found: Results,
@@ -289,16 +351,20 @@ impl Heading {
         fractiles.push(list(names, |at: &Fractiles| at.peaks));
         let peaks = [list(["peak", "share"], |at: &(f64, f64)| [at.0, at.1])];
         let cases = Table::new(self.case_columns(), &results.cases)?;
+        let found = found
+            .with_table("suite.csv", cases)
+            .with_table("peaks.csv", Table::new(peaks, &ida::peaks(results))?);
+        if self.is_as_recorded() {
+            return Ok(found);
+        }
         let levels = Table::new(self.level_columns(), &results.levels)?;
         Ok(found
-            .with_table("suite.csv", cases)
             .with_table("fragility.csv", levels)
             .with_table("intensity.csv", Table::new(efficiency_columns(), measures)?)
             .with_table(
                 "capacities.csv",
                 Table::new(capacity_columns(), capacities)?,
             )
-            .with_table("peaks.csv", Table::new(peaks, &ida::peaks(results))?)
             .with_table("ida.csv", Table::new(fractiles, &ida::fractiles(results))?))
     }
 
@@ -310,21 +376,35 @@ impl Heading {
             let words = format!("{}, {}", case.record_in_words(), self.level(case));
             cases.push_history(&words, &case.result, || self.scenario_of(case, first));
         }
-        let own = "each record acts alone, at every level, and starts from rest; the lowest overturning level of a record is bisected between \
-                   two levels, and a finer search below it finds bands, unless it is \"of the levels tried\"; the curve takes the records as equally \
-                   likely";
-        let draw = |figure| ida::draw(figure, self, results, &cases.spots);
+        let own = match self.is_as_recorded() {
+            true => "each record acts alone, once, as it is, and starts from rest",
+            false => {
+                "each record acts alone, at every level, and starts from rest; the lowest overturning level of a record is bisected between \
+                 two levels, and a finer search below it finds bands, unless it is \"of the levels tried\"; the curve takes the records as equally \
+                 likely"
+            }
+        };
+        let draw = |figure| match self.is_as_recorded() {
+            true => outcomes::draw(figure, self, results, &cases.spots),
+            false => ida::draw(figure, self, results, &cases.spots),
+        };
         let page = Page::new(self.title(), self.what.clone(), &[own], &[self.model]);
         let more: [DrawPicture<'_>; 2] = [
             &|figure| picture::draw(figure, self, results, caption),
             &|figure| ida::draw_peaks(figure, self, results),
         ];
-        found.with_page("suite.html", page, &cases, (&draw, &more))
+        // The first of these pictures has levels.
+        let more = &more[usize::from(self.is_as_recorded())..];
+        found.with_page("suite.html", page, &cases, (&draw, more))
     }
 
-    /// Answer that may be quoted: the largest intensity that is safe under all records. Also returns the largest friction demand of the
+    /// Answer that may be quoted: the largest intensity that is safe under all records, or the number of records that overturn as they are. Also returns the largest friction demand of the
     /// surviving cases up to it.
-    fn answer(&self, results: &SuiteFragility) -> (ModelAnswer, Option<f64>) {
+    fn answer(
+        &self,
+        results: &SuiteFragility,
+        as_recorded: Option<AsRecorded>,
+    ) -> (ModelAnswer, Option<f64>) {
         let survivals = results.survivals().into_iter();
         let safe = |survival: &Survival| survival.survives_up_to.unwrap_or(0.0);
         let excess = |case: &CaseRow| case.result.as_ref().ok()?.thrust_excess_ratio;
@@ -358,6 +438,9 @@ impl Heading {
                 )),
             }
         });
+        let answer = as_recorded.map_or(answer, |found| {
+            Ok(found.in_words(results.record_count(), self.directions))
+        });
         let answer = ModelAnswer::new(self.model, self.is_arch, excess_ratio, answer)
             .with_restitution(self.restitution.clone());
         (answer, friction_demand)
@@ -385,6 +468,8 @@ impl Heading {
             self.model.is_repeated,
             |case: &CaseRow| case.result.as_ref().map_err(|_| FAILED),
         ));
+        let names = MEASURES[1..].iter().map(|(name, ..)| *name);
+        all.push(list(names, CaseRow::intensities));
         all
     }
 

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{CaseRow, SuiteFragility};
 use crate::dynamics::Intensity;
 use crate::dynamics::demand::peak_displacement;
+use crate::output::each;
 use crate::scenario::{Series, Spectral};
 use crate::studies::intervals::dispersion_interval;
 use crate::studies::statistics::bootstrap;
@@ -38,6 +39,17 @@ impl Strength {
             spectral_g: omega * omega * displacement_m / gravity_m_s2,
             arias_m_s: intensity.arias_m_s,
         }
+    }
+}
+
+impl Strength {
+    /// Intensities of the record times a factor, in the order of [`MEASURES`] after the peak acceleration.
+    pub(super) fn at(&self, scale: f64) -> [f64; 3] {
+        [
+            self.velocity_m_s * scale,
+            self.spectral_g * scale,
+            self.arias_m_s * scale.powi(2),
+        ]
     }
 }
 
@@ -109,9 +121,8 @@ impl SuiteFragility {
         let scale = level.map(scale_of);
         // All measures are scaled by the factor of the peak.
         let peak_g = scale.map(|scale| own.peak_g / own.scale * scale);
-        let of = |strength: fn(&Strength) -> f64, power: i32| {
-            Some(strength(own.strength.as_ref()?) * scale?.powi(power))
-        };
+        let at = own.strength.as_ref().zip(scale);
+        let [velocity, spectral, arias] = each(at.map(|(strength, scale)| strength.at(scale)));
         RecordCapacity {
             record: &own.record,
             mirrored: own.mirrored,
@@ -119,12 +130,7 @@ impl SuiteFragility {
             scale,
             at_most,
             levels_only,
-            in_measures: [
-                peak_g,
-                of(|strength| strength.velocity_m_s, 1),
-                of(|strength| strength.spectral_g, 1),
-                of(|strength| strength.arias_m_s, 2),
-            ],
+            in_measures: [peak_g, velocity, spectral, arias],
         }
     }
 }
