@@ -187,6 +187,23 @@ def test_a_suite_is_that_of_the_program(program: Program, tmp_path: Path) -> Non
             suite(column, some, peaks_g=levels)
 
 
+def test_records_without_levels_act_once(program: Program, tmp_path: Path) -> None:
+    """The same cases as by the program, and a mark for each in the picture."""
+    records = [Record.read(path) for path in sorted(RECORDS.glob("wave-*.at2"))[:4]]
+    found = suite(Column(4.0, 0.8), records, duration_s=30.0)
+    names = ", ".join(f'"{record.name}"' for record in records)
+    for record in records:
+        (tmp_path / record.name).write_bytes((RECORDS / record.name).read_bytes())
+    text = f"[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30.0\n[suite]\nrecords = [{names}]\n"
+    folder = by_program(program, tmp_path, "suite", text)
+    assert (folder / "suite.csv").read_bytes() == found.files["suite.csv"]
+    outcomes = found.columns()["outcome"]
+    assert len(outcomes) == 4
+    assert found.summary["as_recorded"].records_that_overturn == np.sum(outcomes == "overturned")
+    marks = found.plot().collections
+    assert [len(mark.get_offsets()) for mark in marks] == [np.sum(outcomes == "overturned"), 0, np.sum(outcomes != "overturned")]
+
+
 def test_records_are_corrected() -> None:
     times = np.arange(1001) * 0.01
     values = np.sin(3.0 * times) + 0.3
