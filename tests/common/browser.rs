@@ -45,6 +45,9 @@ pub fn browser(arguments: &[&str], address: &str) -> Option<(Command, tempfile::
     Some((command, profile))
 }
 
+/// Setting of a page that may move by itself.
+pub const IN_MOTION: &str = "--force-prefers-no-reduced-motion";
+
 /// Output of the installed browser with these further arguments for a page; `None`, with a message, if there is no browser.
 fn browse(arguments: &[&str], page: &Path) -> Option<Output> {
     let (mut command, _profile) = browser(arguments, &format!("file://{}", page.display()))?;
@@ -58,13 +61,18 @@ fn browse(arguments: &[&str], page: &Path) -> Option<Output> {
 /// never as narrow as that of a phone. Time is virtual and nothing is drawn, so a timer replaces frames of an animation.
 pub fn checked(page: &Path, check: &str, data: &str, settings: &[&str]) -> Option<String> {
     let html = fs::read_to_string(page).unwrap();
+    // Pages that move by themselves stand still, unless motion is asked for.
+    let in_motion = settings.contains(&IN_MOTION);
     let before = "<script>window.failures = []; window.passed = 0;\
+        ((media) => { window.matchMedia = (query) =>\
+        query.includes('reduced-motion') ? { matches: !IN_MOTION } : media(query); })(window.matchMedia.bind(window));\
         window.verify = (holds, what) => { if (holds) passed += 1; else failures.push(what); };\
         window.addEventListener('error', (event) => verify(false, `error: ${event.message}`));\
         window.addEventListener('unhandledrejection', (event) => verify(false, `error: ${event.reason}`));\
         window.requestAnimationFrame = (tick) => setTimeout(() => tick(performance.now()), 16);\
         const error = console.error; console.error = (...words) => { verify(false, `console: ${words}`); };\
         </script>";
+    let before = before.replace("IN_MOTION", if in_motion { "true" } else { "false" });
     let after = format!(
         "<script>const check = async () => {{ await window.archrock?.ready; const data = {data};\n{check}\n}};\
          check().catch((error) => verify(false, `${{error}} ${{error.stack}}`)).then(() => {{\

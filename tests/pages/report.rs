@@ -370,3 +370,28 @@ fn without_a_report_the_old_one_is_removed() {
     }
     assert!(folder.path().join("rotations.csv").exists());
 }
+
+/// A page opens in motion, from the start; on paper it shows the strongest instant. A tall structure has a tall picture.
+#[test]
+fn a_page_opens_in_motion() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = program::scenarios().join("facade.toml");
+    let arguments = ["run", file.to_str().unwrap(), "--out", "."];
+    program::printed(
+        folder.path(),
+        &[&arguments[..], &["--direction", "as_given"]].concat(),
+    );
+    let script = "const wait = () => new Promise((resolve) => setTimeout(resolve, 300));\
+        const first = archrock.shown();\
+        await wait();\
+        const later = archrock.shown();\
+        verify(first.playing && later.playing, 'plays');\
+        verify(later.time > first.time && later.time < archrock.data.opens_s, `${first.time} to ${later.time}`);\
+        const { width, height } = document.getElementById('stage').getBoundingClientRect();\
+        verify(Math.abs(width / height - 1.25) < 0.02, `${width} by ${height}`);\
+        dispatchEvent(new Event('beforeprint'));\
+        const printed = archrock.shown();\
+        verify(!printed.playing && printed.time === archrock.data.opens_s, `prints ${printed.time}`);";
+    let page = folder.path().join("report.html");
+    browser::assert_checked(&page, script, "null", &[browser::IN_MOTION], 4);
+}

@@ -1550,6 +1550,7 @@ class SuiteResult:
     log_likelihood: float | None
     no_fit: str | None
     records: int
+    as_recorded: SuiteAsRecorded | None
     cases: int
     overturned: int
     still_rocking_counted_as_not_overturned: int

@@ -18,6 +18,9 @@ function createPlayer(motion, addCurves) {
   const { signal } = leaving;
   const curves = createPlots(find("plots"), { start, end: stage.historyEnd }, seek);
   const { plots } = curves;
+  // A tall structure has a taller picture.
+  const [low, high] = motion.frame_m;
+  if (!isPart) canvas.style.aspectRatio = Math.min(Math.max((2.2 * (high[0] - low[0])) / (high[1] - low[1]), 1.25), 2);
   slider.min = start;
   slider.max = end;
   slider.step = "any";
@@ -157,6 +160,10 @@ function createPlayer(motion, addCurves) {
       plot.setSize({ width: wide, height: Math.floor(LEAST_PX.plot + (0.65 * free * plot.tall) / all) });
     }
     if (least > tall) document.body.style.zoom = tall / least;
+    if (playing) {
+      play(false);
+      time = motion.opens_s;
+    }
     seek(time);
   }, { signal });
   if (!isPart) window.addEventListener("afterprint", () => {
@@ -169,9 +176,13 @@ function createPlayer(motion, addCurves) {
     draw();
   }, { signal });
 
-  // The page opens at the time of overturning or of the largest rotation.
+  // The page opens at the time of overturning or of the largest rotation; in motion it begins at the start.
   time = motion.opens_s;
   exaggerate(stage.visible(time));
+  if (!isPart && !still.matches) {
+    seek(start);
+    play(true);
+  }
 
   // Interface for scripts: state of the page, and functions that change it.
   window.archrock = {
