@@ -520,6 +520,9 @@ const PARTS = {
     const mark = () => [...document.querySelectorAll(".slider .mark")].find((one) => one.offsetParent)?.textContent ?? "";
     await until(() => mark() !== "", "a mark");
     verify(/^▲ -0\.387 overturns$/.test(mark()), mark());
+    const place = () => [...document.querySelectorAll(".slider .mark")].find((one) => one.offsetParent).getBoundingClientRect();
+    const inForm = ({ left, right }) => left >= 0 && right <= element("form").getBoundingClientRect().right;
+    verify(inForm(place()), "the mark is in the form");
     await afterwards(() => page.edit(text.value.replace("-0.39", "-0.2")), "another amplitude");
     verify(mark().includes("-0.387"), mark());
     // Every file of the study, and the picture, can be saved.

@@ -36,8 +36,11 @@ function createSlider([key, label, from, to, step, words]) {
     mark(value) {
       mark.hidden = value === null || value < Number(range.min) || value > Number(range.max);
       if (mark.hidden) return;
-      mark.textContent = `▲ ${value} overturns`;
-      row.style.setProperty("--place", (value - range.min) / (range.max - range.min));
+      const place = (value - range.min) / (range.max - range.min);
+      // The words stay beside the slider.
+      mark.classList.toggle("end", place > 0.5);
+      mark.textContent = place > 0.5 ? `${value} overturns ▲` : `▲ ${value} overturns`;
+      row.style.setProperty("--place", place);
     },
     show(scenario) {
       const value = valueOf(scenario, key);
