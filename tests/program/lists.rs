@@ -23,7 +23,7 @@ fn names(file: &str, [from, to]: [&str; 2], [before, after]: [&str; 2]) -> Vec<S
 fn pulses_are_those_of_the_program() {
     let known: Vec<_> = Pulse::ALL.iter().map(|pulse| pulse.name()).collect();
     let page = names(
-        "web/page/scenario.js",
+        "web/page/choices.js",
         ["const PULSES = [", "];"],
         ["\n  [\"", "\""],
     );
