@@ -1,5 +1,6 @@
 //! The tables that were given, and the scenario written with their keys.
 
+use super::ReadOptions;
 use super::change::{is_count, is_replaced};
 use super::document::Entries;
 use super::model_kind::ModelKind;
@@ -24,6 +25,15 @@ impl PartialEq for Given {
 }
 
 impl Given {
+    /// The tables of a text that is read with these options.
+    pub(super) fn of(table: &Table<'_>, options: &ReadOptions<'_>) -> Self {
+        Self {
+            tables: table.all_given(),
+            model: options.model,
+            statics: options.statics,
+        }
+    }
+
     /// Resolved tables with the given keys, and the resolved ones as defaults of keys that are not given.
     pub(super) fn with_defaults(&self, resolved: Value) -> Value {
         let Value::Object(resolved) = resolved else {

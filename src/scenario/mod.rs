@@ -370,26 +370,18 @@ impl Scenario {
             demand,
             verify,
             uncertain: None,
-            given: Given {
-                tables: table.all_given(),
-                model: options.model,
-                statics: options.statics,
-            },
+            given: Given::of(table, options),
             files: InputFiles {
                 place: table.files().clone(),
                 ..InputFiles::default()
             },
             ground_motion: Arc::new(GroundMotion::still()),
         };
-        if let Some(named) = named.flatten() {
-            suite::check_directions(table, certain.simulation.direction, named)?;
-            certain = certain.in_directions(named);
-        } else if let Some(suite) = &certain.suite
-            && suite.levels.is_none()
-            && !table.has_key_in("simulation", "direction")
+        let own = certain.simulation.direction;
+        if let Some(suite) = &certain.suite
+            && let Some(directions) = suite.directions(table, own, named.flatten())?
         {
-            // Records that act as they are are not mirrored unless it is asked for.
-            certain = certain.in_directions(Directions::AsGiven);
+            certain = certain.in_directions(directions);
         }
         certain.ground_motion = Arc::new(certain.move_both_feet(ground.motion));
         let end_s = certain.request().end_s;

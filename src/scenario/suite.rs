@@ -277,20 +277,29 @@ const fn directions_of(both_signs: bool) -> Directions {
     }
 }
 
-/// Rejects directions that `both_signs` of a suite names, if `[simulation]` gives others.
-pub(super) fn check_directions(
-    table: &mut Table<'_>,
-    own: Directions,
-    named: Directions,
-) -> ReadResult<()> {
-    if own == named || !table.has_key_in("simulation", "direction") {
-        return Ok(());
+impl Suite {
+    /// Returns the directions of the ground motion that the suite asks for, by `both_signs` (`named`) or because its records act as they are, without
+    /// levels; `None` if those of `[simulation]`, which are `own`, hold. Rejects `both_signs` if `[simulation]` gives other directions.
+    pub(super) fn directions(
+        &self,
+        table: &mut Table<'_>,
+        own: Directions,
+        named: Option<Directions>,
+    ) -> ReadResult<Option<Directions>> {
+        let is_given = table.has_key_in("simulation", "direction");
+        match named {
+            Some(named) if own != named && is_given => {
+                let (own, named) = (own.name(), named.name());
+                let wrong = format!(
+                    "is `direction = \"{named}\"` of [simulation] by an older name, and [simulation] gives \"{own}\"; leave `both_signs` out"
+                );
+                Err(table.reject_in(&["suite"], BOTH_SIGNS, wrong))
+            }
+            Some(named) => Ok(Some(named)),
+            None if self.levels.is_none() && !is_given => Ok(Some(Directions::AsGiven)),
+            None => Ok(None),
+        }
     }
-    let (own, named) = (own.name(), named.name());
-    let wrong = format!(
-        "is `direction = \"{named}\"` of [simulation] by an older name, and [simulation] gives \"{own}\"; leave `both_signs` out"
-    );
-    Err(table.reject_in(&["suite"], BOTH_SIGNS, wrong))
 }
 
 const RECORDS: &str = "records";

@@ -313,14 +313,7 @@ impl Heading {
             with_uncertain_as_overturned: end(1),
             remarks,
         };
-        let captions = report
-            .curves()
-            .into_iter()
-            .map(|(taken, curve)| match curve {
-                Ok(curve) => format!("{curve}{taken}"),
-                Err(reason) => format!("no curve: {reason}{taken}"),
-            });
-        let caption = captions.collect::<Vec<_>>().join("; ");
+        let caption = report.caption();
         let measures = &report.intensity_measures;
         let found = Results::of(FRAGILITY, &report)?;
         let found = self.with_tables(found, &results, (&capacities, measures))?;
@@ -531,6 +524,18 @@ fn efficiency_columns() -> Vec<Column<'static, Efficiency>> {
     }));
     all.extend(fields!(|of: &Efficiency| of => best_share));
     all
+}
+
+impl SuiteSummary {
+    /// Returns the fragility curves in words.
+    fn caption(&self) -> String {
+        let curves = self.curves().into_iter();
+        let captions = curves.map(|(taken, curve)| match curve {
+            Ok(curve) => format!("{curve}{taken}"),
+            Err(reason) => format!("no curve: {reason}{taken}"),
+        });
+        captions.collect::<Vec<_>>().join("; ")
+    }
 }
 
 impl Report for SuiteSummary {
