@@ -93,7 +93,10 @@ impl ModelResults {
         let words = |results: &Results| match detail {
             Detail::Quiet if !is_indented => results.words.clone(),
             Detail::All => results.words.clone(),
-            _ => results.statement.answer(has_numbers),
+            _ => {
+                let answer = results.statement.answer(has_numbers);
+                again.map_or(answer.clone(), |again| command_again(&answer, again))
+            }
         };
         let place = |place: &Place| match detail {
             Detail::Quiet => None,
@@ -114,9 +117,11 @@ impl ModelResults {
         lines.push(format!("{indent}{}", words(&self.own)));
         let next = self.own.statement.next.as_ref().zip(again);
         let next = next.filter(|_| detail == Detail::Answer);
-        lines.extend(next.map(|(next, again)| {
-            format!("{indent}next: archrock {}", next.replace("FILE", again))
-        }));
+        lines.extend(
+            next.map(|(next, again)| {
+                format!("{indent}next: archrock {}", command_again(next, again))
+            }),
+        );
         let own = self.place.as_ref();
         // The details of a run name its files.
         let own = own.filter(|place| detail != Detail::All || !place.is_in_words);
@@ -213,6 +218,19 @@ impl CommandResults {
         let all = Comparison::new(models, self.quote(), peaks);
         serde_json::to_value(all).map_err(|error| Failure::Work(error.to_string()))
     }
+}
+
+/// Writes the scenario file with its options in place of `FILE` in a command, whose model of motion replaces that of the options.
+fn command_again(command: &str, again: &str) -> String {
+    const MODEL: &str = " --hinges ";
+    let (before, after) = again.split_once(MODEL).unwrap_or((again, ""));
+    let (_, after) = after.split_once(' ').unwrap_or_default();
+    let without_model = [before, after].join(if after.is_empty() { "" } else { " " });
+    let again = match command.contains(MODEL) {
+        true => &without_model,
+        false => again,
+    };
+    command.replace("FILE", again)
 }
 
 /// Returns the place of the results of a study in a folder.

@@ -101,8 +101,8 @@ pub struct Statement {
     pub is_table: bool,
 }
 
-/// Largest number of characters of a line with several thoughts.
-const LINE: usize = 96;
+/// Largest number of characters of a line: with the indent it stays below 100.
+const LINE: usize = 97;
 /// Verdicts that begin an answer. Each is printed in capitals.
 const VERDICTS: [&str; 6] = [
     "survives",
@@ -138,19 +138,18 @@ impl Statement {
         }
     }
 
-    /// Returns the answer with its conditions and warnings, in lines; with the main numbers if `has_numbers`. A study without an answer has its
-    /// verdict in their place.
+    /// Returns the answer with its conditions and warnings, in lines; with the main numbers if `has_numbers`. Without an answer the verdict follows the
+    /// reason.
     pub fn answer(&self, has_numbers: bool) -> String {
         let quote = self.quote.as_deref();
         let has_answer = quote.is_some_and(|quote| !quote.starts_with(NO_ANSWER));
-        let thoughts = |words: &str| with_capitals(in_lines(words.split(THOUGHT_END)));
-        let verdict = || self.verdict.lines().flat_map(thoughts);
-        let mut lines: Vec<String> = match has_answer {
-            true => Vec::new(),
-            false => verdict().collect(),
-        };
-        lines.extend(quote.into_iter().flat_map(thoughts));
-        let said = [quote, Some(&*self.verdict).filter(|_| !has_answer)];
+        let verdict = Some(&*self.verdict).filter(|_| !has_answer);
+        let said = [quote, verdict];
+        let words = said.iter().flatten().flat_map(|words| words.lines());
+        let mut lines: Vec<String> = words
+            .flat_map(|words| in_lines(words.split(THOUGHT_END)))
+            .collect();
+        with_capitals(&mut lines);
         let said: String = said.into_iter().flatten().collect();
         let numbers = self.numbers.iter().filter(|_| has_numbers);
         for words in self.limits.iter().chain(numbers) {
@@ -204,18 +203,18 @@ fn new_thoughts<'w>(words: &'w str, said: &str) -> impl Iterator<Item = &'w str>
 fn in_lines<'t>(thoughts: impl IntoIterator<Item = &'t str>) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for thought in thoughts {
-        let mut words = thought.split(' ');
+        let mut words = words_with_units(thought).into_iter();
         let begun = match lines.last_mut() {
-            Some(line) if length(line) + length(thought) < LINE => {
+            Some(line) if length(line) + length(THOUGHT_END) + length(thought) <= LINE => {
                 *line += THOUGHT_END;
                 *line += thought;
                 continue;
             }
             _ => words.next().unwrap_or_default(),
         };
-        let mut line = begun.to_owned();
+        let mut line = begun;
         for word in words {
-            match length(&line) + length(word) < LINE {
+            match length(&line) + 1 + length(&word) <= LINE {
                 true => line += &format!(" {word}"),
                 false => lines.push(std::mem::replace(&mut line, format!("  {word}"))),
             }
@@ -225,8 +224,24 @@ fn in_lines<'t>(thoughts: impl IntoIterator<Item = &'t str>) -> Vec<String> {
     lines
 }
 
+/// Divides words at blanks, but not between a number and its unit.
+fn words_with_units(words: &str) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    for word in words.split(' ') {
+        let begins_as_unit = word.starts_with(|c: char| c.is_alphabetic() || c == '%');
+        let is_unit = begins_as_unit && length(word.trim_end_matches([')', ',', ';'])) <= 3;
+        match found.last_mut() {
+            Some(last) if is_unit && last.ends_with(|c: char| c.is_ascii_digit()) => {
+                *last += &format!(" {word}");
+            }
+            _ => found.push(word.to_owned()),
+        }
+    }
+    found
+}
+
 /// Writes the verdict at the beginning of an answer in capitals.
-fn with_capitals(mut lines: Vec<String>) -> Vec<String> {
+fn with_capitals(lines: &mut [String]) {
     if let Some(first) = lines.first_mut()
         && let Some(verdict) = VERDICTS
             .into_iter()
@@ -234,7 +249,6 @@ fn with_capitals(mut lines: Vec<String>) -> Vec<String> {
     {
         *first = first.replacen(verdict, &verdict.to_uppercase(), 1);
     }
-    lines
 }
 
 /// Returns the number of characters.

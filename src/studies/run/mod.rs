@@ -249,7 +249,9 @@ fn next_command(scenarios: &[Scenario], all: &[ModelResults]) -> Option<String> 
         return None;
     };
     let is_outside = one.summary.four_links() == Some(FourLinkQuality::Outside);
-    let options = free_hinges_instead(scenario).filter(|_| is_outside);
+    let quote = one.summary.to_quote.as_deref();
+    let has_no_answer = quote.is_some_and(|quote| quote.starts_with(quotable::NO_ANSWER));
+    let options = free_hinges_instead(scenario).filter(|_| is_outside || has_no_answer);
     let moves = one.summary.ground.whole_peak_g > 0.0;
     let threshold = moves.then(|| "threshold FILE".to_owned());
     options.map_or(threshold, |options| Some(format!("run FILE {options}")))

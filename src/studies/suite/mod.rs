@@ -90,7 +90,7 @@ impl CaseRow {
         self.result.as_ref().ok().map(Ending::verdict)
     }
 
-    /// Intensities of the scaled record, in the order of [`MEASURES`] after the peak acceleration.
+    /// Intensities of the scaled record, in the order of [`strength::MEASURES`] after the peak acceleration.
     fn intensities(&self) -> [Option<f64>; 3] {
         let strength = self.strength.as_ref();
         each(strength.map(|strength| strength.at(self.scale)))
