@@ -151,7 +151,7 @@ fn friction_in_words(coefficient: f64, need: &str) -> String {
         false => need,
     };
     let before = if may_slip(coefficient) {
-        "joints may slip before: "
+        "joints may slip: "
     } else {
         ""
     };
