@@ -201,7 +201,7 @@ def test_records_without_levels_act_once(program: Program, tmp_path: Path) -> No
     assert len(outcomes) == 4
     assert found.summary["as_recorded"].records_that_overturn == np.sum(outcomes == "overturned")
     marks = found.plot().collections
-    assert [len(mark.get_offsets()) for mark in marks] == [np.sum(outcomes == "overturned"), 0, np.sum(outcomes != "overturned")]
+    assert [np.shape(mark.get_offsets())[0] for mark in marks] == [np.sum(outcomes == "overturned"), 0, np.sum(outcomes != "overturned")]
 
 
 def test_records_are_corrected() -> None:
