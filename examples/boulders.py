@@ -6,7 +6,7 @@
 
 The tests, and the distinct elements that its authors computed, are in that folder: motions of the table (``Test*.txt``), outcomes
 (``Results_Granite.xlsx``) and measures of intensity (``Earthquake_Records_Info.xlsx``). Tests without a motion in the copy are left out. Every
-motion acts once, as it is: a suite without levels. The width of the column is fitted. Needs Python alone.
+motion acts once, unscaled: a suite without levels. The width of the column is fitted. Needs Python alone.
 """
 
 import argparse

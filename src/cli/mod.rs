@@ -79,7 +79,7 @@ enum Command {
     /// Map which pulses overturn the structure: one history per cell of [map] in the scenario.
     #[command(after_help = examples::of_studies(&[MAP], examples::MAP))]
     Map(studies::MapArguments),
-    /// Run every record of a suite at every level and fit a fragility curve, or each record once as it is: see [suite] in the scenario.
+    /// Run every record of a suite at every level and fit a fragility curve, or each record once, unscaled: see [suite] in the scenario.
     #[command(after_help = examples::of_studies(&[SUITE], examples::SUITE))]
     Suite(study_options::StudyArguments),
     /// Find the factors on the ground motion that overturn the structure, and the safe gaps between them; or the least factor for

@@ -91,12 +91,14 @@ impl ModelResults {
             detail => detail,
         };
         let words = |results: &Results| match detail {
-            Detail::Quiet if !is_indented => results.words.clone(),
-            Detail::All => results.words.clone(),
-            _ => {
+            Detail::Quiet | Detail::Answer if is_indented => {
                 let answer = results.statement.answer(has_numbers);
-                again.map_or(answer.clone(), |again| command_again(&answer, again))
+                match again {
+                    Some(again) => command_again(&answer, again),
+                    None => answer,
+                }
             }
+            _ => results.words.clone(),
         };
         let place = |place: &Place| match detail {
             Detail::Quiet => None,

@@ -15,7 +15,7 @@
 //! ```
 //!
 //! Every record acts on the structure at every level: multiplied by each factor of `scales`, or scaled to each peak of `peaks_g`. Without both,
-//! every record acts once, as it is. `[ground]` is not used.
+//! every record acts once, unscaled. `[ground]` is not used.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -83,7 +83,7 @@ pub struct Suite {
     pub has_entries: bool,
     /// Intensity measure of the levels.
     pub measure: Measure,
-    /// The levels to which each record is scaled, above 0; `None`: each record acts once, as it is.
+    /// The levels to which each record is scaled, above 0; `None`: each record acts once, unscaled.
     pub levels: Option<Sequence>,
     /// The oscillator whose spectral acceleration is a measure of intensity.
     pub spectral: Spectral,
@@ -278,8 +278,8 @@ const fn directions_of(both_signs: bool) -> Directions {
 }
 
 impl Suite {
-    /// Returns the directions of the ground motion that the suite asks for, by `both_signs` (`named`) or because its records act as they are, without
-    /// levels; `None` if those of `[simulation]`, which are `own`, hold. Rejects `both_signs` if `[simulation]` gives other directions.
+    /// Returns the directions of the ground motion that the suite chooses: those of `both_signs` (`named`), or as given if it has no levels. `None` leaves
+    /// those of `[simulation]` (`own`). Rejects `both_signs` if `[simulation]` gives other directions.
     pub(super) fn directions(
         &self,
         table: &mut Table<'_>,

@@ -192,11 +192,17 @@ impl Statement {
     }
 }
 
-/// Returns the thoughts of some words that others do not contain. Friction is a need among the limits, and a condition in an answer.
+/// Returns the thoughts of some words that `said` does not contain. Friction is a need among the limits, and a condition in an answer.
 fn new_thoughts<'w>(words: &'w str, said: &str) -> impl Iterator<Item = &'w str> {
-    words
-        .split(THOUGHT_END)
-        .filter(move |thought| !said.contains(thought.strip_prefix("needs ").unwrap_or(thought)))
+    // A number that goes on is another number.
+    let ends = |after: &str| !after.starts_with(|c: char| c.is_ascii_digit());
+    let is_said = move |thought: &str| {
+        let thought = thought.strip_prefix("needs ").unwrap_or(thought);
+        said.match_indices(thought)
+            .any(|(at, _)| ends(&said[at + thought.len()..]))
+    };
+    let thoughts = words.split(THOUGHT_END);
+    thoughts.filter(move |thought| !is_said(thought))
 }
 
 /// Writes thoughts in lines: several short ones on a line, and a long one on several.
@@ -254,4 +260,29 @@ fn with_capitals(lines: &mut [String]) {
 /// Returns the number of characters.
 fn length(text: &str) -> usize {
     text.chars().count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thoughts_of_the_answer_are_not_repeated() {
+        let said = "survives up to 1.19, with four links; if its joints have a friction coefficient of 0.51";
+        let new = |words| new_thoughts(words, said).collect::<Vec<_>>();
+        assert!(new("needs a friction coefficient of 0.51; survives up to 1.19").is_empty());
+        let other = "needs a friction coefficient of 0.5";
+        assert_eq!(new(other), [other]);
+        assert_eq!(
+            new("survives up to 1.1; slips"),
+            ["survives up to 1.1", "slips"]
+        );
+    }
+
+    #[test]
+    fn lines_keep_numbers_with_their_units() {
+        let long = format!("{} 0.40260 g (highest)", "x".repeat(LINE - 8));
+        let lines = in_lines([long.as_str(), "next"]);
+        assert_eq!(lines[1], "  0.40260 g (highest); next");
+    }
 }

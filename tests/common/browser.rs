@@ -61,7 +61,7 @@ fn browse(arguments: &[&str], page: &Path) -> Option<Output> {
 /// never as narrow as that of a phone. Time is virtual and nothing is drawn, so a timer replaces frames of an animation.
 pub fn checked(page: &Path, check: &str, data: &str, settings: &[&str]) -> Option<String> {
     let html = fs::read_to_string(page).unwrap();
-    // Pages that move by themselves stand still, unless motion is asked for.
+    // Animations do not start by themselves, unless `IN_MOTION` allows it.
     let in_motion = settings.contains(&IN_MOTION);
     let before = "<script>window.failures = []; window.passed = 0;\
         ((media) => { window.matchMedia = (query) =>\

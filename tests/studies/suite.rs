@@ -1620,7 +1620,7 @@ fn distributions_of_models_are_compared() {
     }
 }
 
-/// Without levels each record acts once, as it is and as given: outcomes are those of runs with `[ground.record]`, and the picture has a circle for each
+/// Without levels each record acts once, unscaled and as given: outcomes are those of runs with `[ground.record]`, and the picture has a circle for each
 /// at the measures of a sine in closed form.
 #[test]
 fn records_act_once_without_levels() {
@@ -1671,7 +1671,7 @@ fn records_act_once_without_levels() {
     assert_eq!(report["scenario"]["simulation"]["direction"], "as_given");
     let quote = report["to_quote"].as_str().unwrap();
     let percent = 100.0 * overturned as f64 / sines.len() as f64;
-    let answer = format!("{overturned} of 5 records ({percent:.1} %) overturn it as they are");
+    let answer = format!("{overturned} of 5 records ({percent:.1} %) overturn it unscaled");
     assert!(quote.starts_with(&answer), "{quote}");
     assert!(said.contains(&answer), "{said}");
     for absent in ["survives up to", "median", "of the levels tried"] {

@@ -320,7 +320,7 @@ class ThresholdAlong(ThresholdAlongResult, Results):
 
 
 class Suite(SuiteResult, Results):
-    """A suite of records, and the fragility curve of its cases; without levels each record acts once, as it is, and there is no curve."""
+    """A suite of records, and the fragility curve of its cases; without levels each record acts once, unscaled, and there is no curve."""
 
     __slots__ = ()
 
@@ -814,7 +814,7 @@ def suite(
         of: the structure, or a scenario with a table ``[suite]``, which gives everything else.
         records: the records, each with its own name.
         peaks_g: increasing peak accelerations to which each record is scaled; or give ``scales``, which multiply the
-            scaling of the records. Without both, each record acts once, as it is, and as given unless ``direction`` is named.
+            scaling of the records. Without both, each record acts once, unscaled, and as given unless ``direction`` is named.
         scales: increasing factors on each record.
         both_signs: older name of ``direction``: true is ``"both"``, false is ``"as_given"``; ``None``: as ``direction``.
         threads: as for :func:`overturning_map`.

@@ -27,7 +27,7 @@ pub struct Heading {
     pub(super) is_arch: bool,
     /// The measure of the intensities.
     pub measure: Measure,
-    /// Spacing of the levels; `None` if each record acts once, as it is.
+    /// Spacing of the levels; `None` if each record acts once, unscaled.
     spacing: Option<Spacing>,
     /// True if each record acts in both directions, in cases of their own.
     has_both: bool,
@@ -82,7 +82,7 @@ impl Heading {
         self.title.as_deref().unwrap_or(otherwise)
     }
 
-    /// True if each record acts once, as it is.
+    /// True if each record acts once, unscaled.
     pub(super) const fn is_as_recorded(&self) -> bool {
         self.spacing.is_none()
     }

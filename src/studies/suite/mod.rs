@@ -345,7 +345,7 @@ impl RecordSuite<'_> {
     }
 
     /// Level below that of a case; for the lowest level, that at which the structure starts to move under its record. `None` if that is
-    /// unknown or higher, or if each record acts once, as it is.
+    /// unknown or higher, or if each record acts once, unscaled.
     fn level_below(&self, index: usize) -> Option<f64> {
         self.suite.levels.as_ref()?;
         if let Some(below) = (index % self.levels.len()).checked_sub(1) {

@@ -1,4 +1,4 @@
-//! The picture of records that act once, as they are: two measures of their intensity, marked by outcome.
+//! The picture of unscaled records: a mark for each by outcome, over two measures of intensity.
 
 use super::{CaseRow, Heading, SuiteFragility};
 use crate::output::page::{Spot, SpotKind};

@@ -76,7 +76,7 @@ pub struct SuiteSummary {
     curve: Curve,
     /// Number of records.
     records: usize,
-    /// The number of records that overturn the structure, if each acts once, as it is; null with levels.
+    /// The number of records that overturn the structure, if each acts once, unscaled; null with levels.
     #[serde(default)]
     as_recorded: Option<AsRecorded>,
     #[serde(flatten)]
@@ -109,7 +109,7 @@ pub struct SuiteSummary {
     remarks: Remarks,
 }
 
-/// The number of records that overturn the structure as they are. In both directions a record overturns it if one of them does.
+/// The number of unscaled records that overturn the structure. A record counts if it does so in at least one direction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct AsRecorded {
     /// Number of records that certainly overturn the structure.
@@ -141,8 +141,8 @@ impl AsRecorded {
     /// The answer in words.
     fn in_words(self, records: usize, directions: Directions) -> String {
         let overturn = match self.records_that_overturn {
-            1 => "overturns it as it is",
-            _ => "overturn it as they are",
+            1 => "overturns it unscaled",
+            _ => "overturn it unscaled",
         };
         let direction = match directions {
             Directions::Both => " in at least one direction",
@@ -370,7 +370,7 @@ impl Heading {
             cases.push_history(&words, &case.result, || self.scenario_of(case, first));
         }
         let own = match self.is_as_recorded() {
-            true => "each record acts alone, once, as it is, and starts from rest",
+            true => "each record acts alone, once, unscaled, and starts from rest",
             false => {
                 "each record acts alone, at every level, and starts from rest; the lowest overturning level of a record is bisected between \
                  two levels, and a finer search below it finds bands, unless it is \"of the levels tried\"; the curve takes the records as equally \
@@ -391,7 +391,7 @@ impl Heading {
         found.with_page("suite.html", page, &cases, (&draw, more))
     }
 
-    /// Answer that may be quoted: the largest intensity that is safe under all records, or the number of records that overturn as they are. Also returns the largest friction demand of the
+    /// Answer that may be quoted: the largest intensity that is safe under all records, or the number of unscaled records that overturn the structure. Also returns the largest friction demand of the
     /// surviving cases up to it.
     fn answer(
         &self,

@@ -124,7 +124,7 @@ struct Body {
     inverse_masses: Vector3<f64>,
     /// Velocity of the centre, and rotation rate, without impulses at the pins.
     free: Vector3<f64>,
-    /// The same with impulses.
+    /// Velocity of the centre, and rotation rate, with the impulses at the pins.
     motion: Vector3<f64>,
 }
 
