@@ -47,7 +47,7 @@ pub enum PrintError {
     Cancelled,
     /// The system has no suitable font.
     #[error(
-        "the system has no font like Helvetica: install one, such as Liberation Sans, or take the picture as SVG"
+        "the system has no font like Helvetica: install Liberation Sans or DejaVu Sans, or take the picture as SVG"
     )]
     NoFont,
     /// The picture cannot be converted.
@@ -118,7 +118,7 @@ mod converted {
     use krilla::page::PageSettings;
     use krilla_svg::{SurfaceExt as _, SvgSettings};
     use resvg::tiny_skia::{self, Color, Pixmap, Transform};
-    use resvg::usvg::fontdb::{Family, Query};
+    use resvg::usvg::fontdb::{Database, Family, Query};
     use resvg::usvg::{self, Options, Tree};
 
     use super::PrintError;
@@ -131,6 +131,8 @@ mod converted {
     /// Pixels of CSS per inch, and points of print per inch.
     const CSS_DPI: f32 = 96.0;
     const POINTS_PER_INCH: f32 = 72.0;
+    /// Fonts of systems without one like Helvetica. Each text keeps the length of the layout, so these fit too.
+    const OTHER_FONTS: &[&str] = &["DejaVu Sans", "Noto Sans", "Roboto"];
 
     pub fn pdf(picture: &str) -> Result<Vec<u8>, PrintError> {
         let tree = Raster::new()?.tree(picture)?;
@@ -192,12 +194,20 @@ mod converted {
                 "sans-serif" => Family::SansSerif,
                 name => Family::Name(name),
             });
-            let query = Query {
-                families: &names.collect::<Vec<_>>(),
-                ..Query::default()
+            let names = names.collect::<Vec<_>>();
+            let has = |fonts: &Database, names: &[Family<'_>]| {
+                let query = Query {
+                    families: names,
+                    ..Query::default()
+                };
+                fonts.query(&query).is_some()
             };
-            // Without a font texts would be missing without an error.
-            fonts.query(&query).ok_or(PrintError::NoFont)?;
+            if !has(fonts, &names) {
+                let mut others = OTHER_FONTS.iter();
+                let other = others.find(|name| has(fonts, &[Family::Name(name)]));
+                // Without a font texts would be missing without an error.
+                fonts.set_sans_serif_family(*other.ok_or(PrintError::NoFont)?);
+            }
             Ok(Self(options))
         }
 
