@@ -38,7 +38,7 @@ pub struct Materials {
 pub enum Stiffness {
     /// One stiffness for all joints.
     Uniform(JointStiffness),
-    /// Stone and mortar in series: `1/kn = t_m/E_m + L/E_b`. `L` is the distance between the centres of the two blocks across the joint; at a
+    /// Stone and mortar in series: `1/kn = t_m/E_m + L/E_s`. `L` is the distance between the centres of the two blocks across the joint; at a
     /// support, between the centre of the block and the joint.
     Materials(Materials),
 }
