@@ -31,7 +31,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use archrock::output::{OutputError, pretty};
+use archrock::output::{OutputError, PrintError, pretty};
 use archrock::scenario::{ScenarioErrors, shown_lines};
 use archrock::studies::{CAPACITY, MAP, RUN, SPREAD, SUITE, THRESHOLD, THRESHOLD_ALONG, VERIFY};
 use clap::error::{ContextKind, ContextValue};
@@ -60,6 +60,7 @@ enum Command {
     Run(run::Arguments),
     /// Make a film of the moving structure: MP4 or WebM by ffmpeg, GIF or animated PNG.
     #[command(after_help = examples::FILM)]
+    #[cfg_attr(not(feature = "print"), command(before_help = archrock_text::wrapped(&PrintError::NotBuilt.to_string()).join("\n")))]
     Film(film::Arguments),
     /// Print the incipient acceleration, the mechanism to either side and the equivalent block.
     #[command(after_help = examples::LIMIT)]
@@ -228,8 +229,7 @@ pub fn main() -> ExitCode {
         Err(Failure::Work(message)) => (1, message),
         Err(Failure::Input(message)) => (2, message),
     };
-    // If standard error fails, there is no place for a message.
-    let _ = writeln!(io::stderr(), "error: {}", shown_lines(&message));
+    progress::print_always(&format!("error: {message}"));
     ExitCode::from(code)
 }
 

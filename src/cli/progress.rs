@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use archrock::scenario::shown_lines;
 use archrock::studies::{Counted, Progress, SearchStep};
+use archrock_text::wrapped;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// True if only errors and results are printed.
@@ -30,10 +31,12 @@ pub fn print_status(text: &str) {
     }
 }
 
-/// Prints a line on standard error.
+/// Prints lines on standard error; long ones continue on indented lines.
 pub fn print_always(text: &str) {
+    let text = shown_lines(text);
+    let lines: Vec<String> = text.lines().flat_map(wrapped).collect();
     // If standard error fails, there is no place for a message.
-    let _ = writeln!(io::stderr(), "{}", shown_lines(text));
+    let _ = writeln!(io::stderr(), "{}", lines.join("\n"));
 }
 
 /// Display of progress: a bar on a terminal, otherwise a line per minute.

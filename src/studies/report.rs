@@ -1,5 +1,6 @@
 //! The report of a study: a value that states verdict, warnings and the answer to quote. JSON, words and pages follow from it.
 
+use archrock_text::{LINE, length, wrapped};
 use askama::Template;
 use serde::{Deserialize, Serialize};
 
@@ -101,8 +102,6 @@ pub struct Statement {
     pub is_table: bool,
 }
 
-/// Largest number of characters of a line: with the indent it stays below 100.
-const LINE: usize = 97;
 /// Verdicts that begin an answer. Each is printed in capitals.
 const VERDICTS: [&str; 6] = [
     "survives",
@@ -209,41 +208,15 @@ fn new_thoughts<'w>(words: &'w str, said: &str) -> impl Iterator<Item = &'w str>
 fn in_lines<'t>(thoughts: impl IntoIterator<Item = &'t str>) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for thought in thoughts {
-        let mut words = words_with_units(thought).into_iter();
-        let begun = match lines.last_mut() {
+        match lines.last_mut() {
             Some(line) if length(line) + length(THOUGHT_END) + length(thought) <= LINE => {
                 *line += THOUGHT_END;
                 *line += thought;
-                continue;
             }
-            _ => words.next().unwrap_or_default(),
-        };
-        let mut line = begun;
-        for word in words {
-            match length(&line) + 1 + length(&word) <= LINE {
-                true => line += &format!(" {word}"),
-                false => lines.push(std::mem::replace(&mut line, format!("  {word}"))),
-            }
+            _ => lines.extend(wrapped(thought)),
         }
-        lines.push(line);
     }
     lines
-}
-
-/// Divides words at blanks, but not between a number and its unit.
-fn words_with_units(words: &str) -> Vec<String> {
-    let mut found: Vec<String> = Vec::new();
-    for word in words.split(' ') {
-        let begins_as_unit = word.starts_with(|c: char| c.is_alphabetic() || c == '%');
-        let is_unit = begins_as_unit && length(word.trim_end_matches([')', ',', ';'])) <= 3;
-        match found.last_mut() {
-            Some(last) if is_unit && last.ends_with(|c: char| c.is_ascii_digit()) => {
-                *last += &format!(" {word}");
-            }
-            _ => found.push(word.to_owned()),
-        }
-    }
-    found
 }
 
 /// Writes the verdict at the beginning of an answer in capitals.
@@ -255,11 +228,6 @@ fn with_capitals(lines: &mut [String]) {
     {
         *first = first.replacen(verdict, &verdict.to_uppercase(), 1);
     }
-}
-
-/// Returns the number of characters.
-fn length(text: &str) -> usize {
-    text.chars().count()
 }
 
 #[cfg(test)]

@@ -10,11 +10,13 @@
 //! );
 //! ```
 
+mod line;
 mod message;
 mod names;
 mod number;
 mod shown;
 
+pub use line::{LINE, length, wrapped};
 pub use message::{ensure, excerpt};
 pub use number::{format_fixed, plain, short};
 pub use shown::{is_hidden, shown, shown_lines};

@@ -70,8 +70,10 @@ pub fn skip_without(tool: &str) {
     eprintln!("{tool} is not installed: nothing tested");
 }
 
+/// Standard error of the program, with the lines in one that it has wrapped.
 pub fn stderr(output: &Output) -> String {
-    String::from_utf8(output.stderr.clone()).unwrap()
+    let printed = String::from_utf8(output.stderr.clone()).unwrap();
+    printed.replace("\n  ", " ")
 }
 
 /// Standard output of a run that must have succeeded.

@@ -1,6 +1,6 @@
 //! The program in adverse conditions: killed, without a reader of its output, on a full disk, and with very long output.
 #![cfg(target_os = "linux")]
-use crate::common::program::{names, result_names, skip_without};
+use crate::common::program::{names, result_names, skip_without, stderr};
 use crate::common::results::{Row, Table, json, summary};
 use std::fs::{self, OpenOptions};
 use std::io::{BufRead, BufReader, Read};
@@ -134,10 +134,7 @@ fn run_into(stdout: Stdio, arguments: &[&str]) -> (Option<i32>, String) {
     let mut command = program(arguments);
     let output = command.arg(scenario).stdout(stdout).stderr(Stdio::piped());
     let output = output.spawn().unwrap().wait_with_output().unwrap();
-    (
-        output.status.code(),
-        String::from_utf8(output.stderr).unwrap(),
-    )
+    (output.status.code(), stderr(&output))
 }
 
 #[test]
@@ -177,7 +174,7 @@ fn a_disk_that_fills_up_leaves_nothing() {
         .args([Path::new(PROGRAM), &scenario, &out])
         .output()
         .unwrap();
-    let message = String::from_utf8(output.stderr).unwrap();
+    let message = stderr(&output);
     assert_eq!(output.status.code(), Some(1), "{message}");
     assert_eq!(message.lines().count(), 1, "{message}");
     assert!(
@@ -205,7 +202,7 @@ fn a_closed_pipe_is_no_failure() {
         drop(pipe);
         let output = child.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(0));
-        assert_eq!(String::from_utf8(output.stderr).unwrap(), "");
+        assert_eq!(stderr(&output), "");
     }
 }
 
@@ -287,7 +284,7 @@ fn a_second_program_writing_to_one_folder_is_refused() {
     let run = |folder: &Path| {
         let mut command = program(&["run", "--quiet", "--out"]);
         let output = command.args([folder, &short]).output().unwrap();
-        let said = String::from_utf8(output.stderr).unwrap();
+        let said = stderr(&output);
         (output.status.code(), said)
     };
     let results = root.path().join("results");
@@ -317,7 +314,7 @@ fn within_a_minute(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
         .stdin(Stdio::null())
         .output()
         .unwrap();
-    let said = String::from_utf8(output.stderr).unwrap();
+    let said = stderr(&output);
     (output.status.code(), said)
 }
 
@@ -388,7 +385,7 @@ fn a_folder_that_is_removed_during_a_map_is_made_again() {
         }
         fs::remove_dir_all(&folder).unwrap();
         let output = child.wait_with_output().unwrap();
-        let said = String::from_utf8(output.stderr).unwrap();
+        let said = stderr(&output);
         (output.status.code(), said)
     };
     assert_eq!(study(&[], "map.part"), (Some(0), String::new()));
@@ -461,7 +458,7 @@ fn a_long_run_shows_its_progress_on_a_terminal() {
         .current_dir(root.path())
         .output()
         .unwrap();
-    let said = String::from_utf8(ran.stderr).unwrap();
+    let said = stderr(&ran);
     assert!(said.contains("still rocking at 8.0000 s"), "{said}");
     assert!(said.ends_with("code 0\n"), "{said}");
     assert!(!said.contains(" s simulated"), "{said}");
@@ -497,10 +494,7 @@ fn exhausted_resources_are_named() {
             .args(["-c", &line, PROGRAM])
             .args(more);
         let output = output.output().unwrap();
-        (
-            output.status.code(),
-            String::from_utf8(output.stderr).unwrap(),
-        )
+        (output.status.code(), stderr(&output))
     };
     for files in 5..9 {
         let (code, said) = limited(&format!("ulimit -n {files}"), &["--out", "o"]);
@@ -532,6 +526,6 @@ fn exhausted_resources_are_named() {
             .output()
             .unwrap();
         assert_eq!(output.status.code(), Some(2));
-        assert_eq!(String::from_utf8(output.stderr).unwrap(), words);
+        assert_eq!(stderr(&output), words);
     }
 }
