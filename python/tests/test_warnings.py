@@ -43,7 +43,7 @@ def test_unlikely_numbers_cause_warnings(program: Program, tmp_path: Path) -> No
     arch = Arch(mean_radius_m=500.0, thickness_ratio=0.15, embrace_deg=180.0)
     unlikely = [
         "the mean radius is 500 m: is it in centimetres?",
-        "the pulse peaks at 30 g: is its amplitude in units of gravity?",
+        "the pulse peaks at 30 g: is its amplitude in units of gravity? It looks like per cent of gravity",
     ]
     scenario = Scenario.of(arch, STRONG)
     runs: list[Callable[[], History]] = [lambda: simulate(arch, STRONG), scenario.run]

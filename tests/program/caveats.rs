@@ -111,7 +111,7 @@ fn the_summary_lists_the_warnings() {
     let summary = json(&at.join("o/summary.json"));
     for unlikely in [
         "the mean radius is 500 m: is it in centimetres?",
-        "the pulse peaks at 30 g: is its amplitude in units of gravity?",
+        "the pulse peaks at 30 g: is its amplitude in units of gravity? It looks like per cent of gravity",
     ] {
         assert!(warnings(&summary).contains(&unlikely), "{summary:#}");
         assert!(stderr(&output).contains(&format!("warning: {unlikely}")));

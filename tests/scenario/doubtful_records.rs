@@ -385,17 +385,17 @@ fn units_of_files_are_not_questioned() {
         (
             "strong.at2",
             &["unit=g"],
-            "strong.at2 peaks at 6 g: is its unit \"g\"?\n",
+            "strong.at2 peaks at 6 g: is its unit \"g\"? It looks like m/s2\n",
         ),
         (
             "silent.at2",
             &[],
-            "silent.at2 peaks at 6 g: is its unit \"g\"?\n",
+            "silent.at2 peaks at 6 g: is its unit \"g\"? It looks like m/s2\n",
         ),
         (
             "t.csv",
             &["unit=g"],
-            "t.csv peaks at 5 g: is its unit \"g\"?\n",
+            "t.csv peaks at 5 g: is its unit \"g\"? It looks like m/s2\n",
         ),
     ] {
         let (_, warnings) = check(file, keys);

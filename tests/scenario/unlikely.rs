@@ -105,7 +105,7 @@ const MISTAKES: &[[&str; 5]] = &[
     ["delay", "delay_s = 0.05", "delay_s = 50", "ground.right.delay_s", "milliseconds"],
     ["wave", "velocity_m_s = 500", "velocity_m_s = 5", "ground.right.apparent_velocity_m_s", "km/s"],
     ["record", "unit = 'g'", "unit = 'm/s2'", "g.csv", "g"],
-    ["record", "unit = 'g'", "unit = 'cm/s2'", "g.csv", ""],
+    ["record", "unit = 'g'", "unit = 'cm/s2'", "g.csv", "g"],
     ["record", "g.csv", "minutes.csv", "minutes.csv", "minutes"],
     ["record", "g.csv", "cut.csv", "cut.csv", ""],
     ["record", "g.csv", "offset.csv", "offset.csv", ""],

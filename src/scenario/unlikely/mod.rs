@@ -62,9 +62,15 @@ impl Unlikely {
         self.in_likely(Some(likely))
     }
 
-    fn in_likely(self, likely: Option<&str>) -> Self {
-        let likely = likely.map(str::to_owned);
-        Self { likely, ..self }
+    /// Adds the probable unit, also to the warning unless its question has it.
+    fn in_likely(mut self, likely: Option<&str>) -> Self {
+        if let Some(unit) = likely
+            && !self.warning.contains(&format!("in {unit}"))
+        {
+            self.warning += &format!(" It looks like {unit}");
+        }
+        self.likely = likely.map(str::to_owned);
+        self
     }
 
     /// Outermost table of the key.

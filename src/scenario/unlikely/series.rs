@@ -2,8 +2,9 @@
 
 use std::ops::RangeInclusive;
 
+use super::usual::PEAK;
 use super::{Unlikely, plain};
-use crate::scenario::{Baseline, Format, Scaling, Series, Times};
+use crate::scenario::{Baseline, Format, RecordedQuantity, Scaling, Series, Times};
 
 /// Usual peaks of records, in g. The strongest recorded accelerations are a little above 2 g, and weaker ones than the lower limit move no
 /// masonry. Other values are probably in another unit.
@@ -65,7 +66,8 @@ impl Series {
                 Scaling::PeakG(_) => "is `peak_g` in units of gravity?".to_owned(),
             };
             let phrase = format!("peaks at {} g: {might_be}", plain(peak_g));
-            unlikely.push(self.doubt(peak_g, "g", &phrase));
+            let likely = self.likely_unit(peak_g, gravity_m_s2);
+            unlikely.push(self.doubt(peak_g, "g", &phrase).in_likely(likely));
         }
         let shaking = Shaking::of(&self.accelerations_m_s2(gravity_m_s2));
         unlikely.extend(self.unlikely_times(&shaking));
@@ -83,6 +85,17 @@ impl Series {
             unlikely.push(self.doubt(mean_g, "g", &phrase));
         }
         unlikely
+    }
+
+    /// The unit in which the peak of unscaled accelerations would be nearest to usual ones; `None` if the file states its unit, or none fits.
+    fn likely_unit(&self, peak_g: f64, gravity_m_s2: f64) -> Option<&'static str> {
+        let is_doubted = self.scaling == Scaling::Factor(1.0) && !self.states_unit;
+        let is_acceleration = self.unit.quantity() == RecordedQuantity::Acceleration;
+        let likely = match peak_g * gravity_m_s2 / self.unit.in_si(gravity_m_s2) {
+            0.05..=1.5 => Some("g"),
+            number => PEAK.nearest_unit(number),
+        };
+        likely.filter(|_| is_doubted && is_acceleration)
     }
 
     /// Warning about the step of the samples, or about the frequency at which the ground shakes.
