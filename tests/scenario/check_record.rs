@@ -152,7 +152,7 @@ fn a_record_gives_the_same_history_in_all_formats() {
         let (first, rest) = said.split_once('\n').unwrap();
         assert_eq!(
             first,
-            format!("  {file}: 401 samples every 0.005 s, 2 s long, peak 0.4000 g as scaled")
+            format!("  {file}: 401 samples every 0.005 s, 2 s long, peak 0.4000 g")
         );
         // The resolved scenario reads back.
         let resolved = stdout(&archrock(folder.path(), &["check", "s.toml"]));

@@ -266,7 +266,7 @@ fn corrections_are_stated() {
     let line = "a.csv: 4201 samples every 0.01 s, 42 s long, peak ";
     assert!(words.contains(line), "{words}");
     assert!(
-        words.contains("g as scaled, mean subtracted, high-pass filter at 0.2 Hz\n"),
+        words.contains("g, mean subtracted, high-pass filter at 0.2 Hz\n"),
         "{words}"
     );
     let summary = json(&folder.join("r/summary.json"));

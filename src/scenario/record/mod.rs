@@ -320,6 +320,14 @@ impl Series {
         shown(&self.name)
     }
 
+    /// Returns the file with the channel that was read, of formats with channels; else the name.
+    pub(crate) fn label(&self) -> String {
+        match &self.channel {
+            Some((number, name)) => shown(&format!("{}, channel {number} `{name}`", self.file)),
+            None => self.name(),
+        }
+    }
+
     /// Returns this record with another scaling.
     pub(super) fn scaled(&self, scaling: Scaling) -> Self {
         Self {

@@ -21,7 +21,7 @@ use crate::dynamics::{DOUBTFUL_ENERGY_ERROR, ElasticSummary, HalfCycle, OutcomeK
 use crate::mechanics::Sides;
 use crate::output::mechanisms::by_body;
 use crate::output::{filters, range_ends, render};
-use crate::scenario::{ELASTIC_JOINTS, FREE_HINGES, ModelKind, Scenario, Series};
+use crate::scenario::{ELASTIC_JOINTS, FREE_HINGES, ModelKind, Scaling, Scenario, Series};
 use crate::studies::comparison::Comparison;
 use crate::studies::quotable::STONE_FRICTION;
 use crate::{Outcome, Verdict};
@@ -29,10 +29,14 @@ use crate::{Outcome, Verdict};
 /// Returns the records of a scenario, one line each.
 pub(super) fn records_in_words(scenario: &Scenario) -> String {
     let in_words = |series: &Series| {
-        let (file, sampling) = (series.name(), series.sampling());
+        let (file, sampling) = (series.label(), series.sampling());
         let peak_g = series.peak_g(scenario.gravity_m_s2());
+        let scaled = match series.scaling {
+            Scaling::Factor(1.0) => "",
+            _ => " as scaled",
+        };
         let corrections = series.corrections();
-        format!("  {file}: {sampling}, peak {peak_g:.4} g as scaled{corrections}\n")
+        format!("  {file}: {sampling}, peak {peak_g:.4} g{scaled}{corrections}\n")
     };
     scenario.series().map(in_words).collect()
 }
