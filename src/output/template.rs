@@ -216,7 +216,7 @@ pub(crate) mod filters {
     #[filter_fn]
     pub fn kilonewtons(forces_n: &[f64], _: &dyn Values) -> Result<String> {
         let forces = forces_n.iter().map(|force_n| 1e-3 * force_n);
-        let forces = forces.map(|force_kn| format!("{} kN", argument::format_fixed(force_kn, 6)));
+        let forces = forces.map(|force_kn| format!("{} kN", argument::format_fixed(force_kn, 3)));
         Ok(forces.collect::<Vec<_>>().join(", "))
     }
 
