@@ -346,6 +346,14 @@ impl Report for UncertainSuiteSummary {
     }
 }
 
+impl UncertainSuiteSummary {
+    /// True if the last distribution may be quoted.
+    fn has_answer(&self) -> bool {
+        let quote = self.to_quote.as_ref();
+        quote.is_some_and(|quote| !quote.starts_with(quotable::NO_ANSWER))
+    }
+}
+
 /// Words for an intensity at which too few records overturn.
 const NOWHERE: &str = "nowhere up to the highest level";
 
@@ -383,7 +391,7 @@ impl Fragilities {
         [
             ("record to record", &self.record_to_record),
             ("uncertain data", &self.uncertain_data),
-            ("both", &self.both),
+            ("both records and samples", &self.both),
         ]
     }
 }
