@@ -436,11 +436,11 @@ impl Threshold {
     /// Answer that may be quoted: the largest safe factor, with its range over other stiffness and contact.
     fn answer(&self, scenario: &Scenario, peak_g: f64) -> ModelAnswer {
         let is_known = |one: &VariedThreshold| one.factor.is_ok() && one.incomplete == 0;
-        let over = match &self.varied[..] {
+        let unknown = match &self.varied[..] {
             _ if !scenario.motion.kind.has_stiffness => "",
             [] => ", other stiffness and contact unknown",
-            varied if varied.iter().all(is_known) => " over stiffness and contact",
-            _ => " over stiffness and contact, as far as they have verdicts",
+            varied if varied.iter().all(is_known) => "",
+            _ => ", as far as they have verdicts",
         };
         let others: Vec<f64> = self
             .varied
@@ -449,23 +449,27 @@ impl Threshold {
             .collect();
         let answer = match self.survives_up_to() {
             Some(safe) if others.iter().all(|other| *other >= self.factors.from) => {
-                let safe = ascending(others.into_iter().chain([safe]));
-                let [least, most] = [safe[0], safe[safe.len() - 1]].map(|factor| {
-                    format!(
-                        "{} ({} g)",
-                        rounded_down(factor),
-                        rounded_down(factor * peak_g)
-                    )
-                });
-                let most = if most == least {
-                    String::new()
-                } else {
-                    format!(" to {most}")
+                let all = ascending(others.into_iter().chain([safe]));
+                let (least, most) = (all[0], all[all.len() - 1]);
+                let survives_all =
+                    |one: &VariedThreshold| is_known(one) && one.survives_up_to().is_none();
+                let best = match self.varied.iter().any(survives_all) {
+                    true => "all".to_owned(),
+                    false => rounded_down(most),
                 };
+                let over = match self.varied.len() {
+                    0 => String::new(),
+                    varied => format!(
+                        ", the worst of {} stiffnesses and contacts of joints ({} as given, {best} at best)",
+                        1 + varied,
+                        rounded_down(safe)
+                    ),
+                };
+                let [factor, strength_g] = [least, least * peak_g].map(rounded_down);
                 let directions = self.directions_in_words(scenario);
                 let lower = self.factors.lower_in_words();
                 Ok(format!(
-                    "survives up to {least}{most}{over}{directions}{lower}"
+                    "survives up to {factor} ({strength_g} g){directions}{over}{unknown}{lower}"
                 ))
             }
             _ => Err("the smallest factor tried is not certainly survived".to_owned()),
