@@ -10,13 +10,14 @@ use std::sync::mpsc::{self, Sender};
 use std::thread;
 use std::time::Duration;
 
-use archrock::Runner;
 use archrock::output::Figure;
 use archrock::scenario::{Scenario, Source};
 use archrock::studies::run::{FILES, Sinks};
 use archrock::studies::{Computation, Options, StudyKind, Style, Work};
+use archrock::{Pulse, Runner};
 use serde_json::{Value, json};
 
+use crate::common::Random;
 use crate::common::browser::browser;
 use crate::common::program::scenarios;
 
@@ -62,11 +63,21 @@ fn file(name: &str) -> String {
 
 /// The files of a study as this build of the library computes them.
 fn computed(study: &str, text: &str, files: &[(&str, String)], no_repeat: bool) -> Value {
+    try_computed(study, text, files, no_repeat).unwrap()
+}
+
+/// The same; `None` if the scenario is refused.
+fn try_computed(
+    study: &str,
+    text: &str,
+    files: &[(&str, String)],
+    no_repeat: bool,
+) -> Option<Value> {
     let held = files
         .iter()
         .map(|(name, text)| (PathBuf::from(name), text.clone().into_bytes()));
     let source = Source::of_text(text, "scenario.toml").with_files(held);
-    let scenario = Scenario::of(&source, &Default::default()).unwrap();
+    let scenario = Scenario::of(&source, &Default::default()).ok()?;
     let mut options = Options::default();
     options.run.no_repeat = no_repeat;
     let names = FILES.map(str::to_owned);
@@ -89,7 +100,7 @@ fn computed(study: &str, text: &str, files: &[(&str, String)], no_repeat: bool) 
             work,
             sinks,
         )
-        .unwrap();
+        .ok()?;
     let Computation::Complete(results, _) = done else {
         panic!("{study} is incomplete");
     };
@@ -102,7 +113,54 @@ fn computed(study: &str, text: &str, files: &[(&str, String)], no_repeat: bool) 
     let mut summary = results.summary;
     summary.as_object_mut().unwrap().remove("longest_step_us");
     let answer = results.statement.answer(true);
-    json!({ "summary": summary, "words": results.words, "answer": answer, "tables": Value::Object(tables.collect()) })
+    Some(
+        json!({ "summary": summary, "words": results.words, "answer": answer, "tables": Value::Object(tables.collect()) }),
+    )
+}
+
+/// A scenario of any shape, pulse and model; some are refused.
+fn random_scenario(random: &mut Random) -> String {
+    let models = [
+        "",
+        "[free_hinges]",
+        "[elastic_joints]\nnormal_stiffness_gpa_m = 10",
+    ];
+    let model = models[random.pick(3)];
+    let blocks = format!("voussoirs = {}\n", 5 + random.pick(9));
+    let span_m = random.within(2.0, 12.0);
+    let mut part = |from: f64, to: f64| span_m * random.within(from, to);
+    let [low, high, thickness_m, width_m] = [
+        part(0.3, 0.5),
+        part(0.55, 0.9),
+        part(0.06, 0.12),
+        part(0.1, 0.4),
+    ];
+    let embrace_deg = random.within(110.0, 180.0);
+    let structure = match random.pick(4) {
+        0 => {
+            let cut = if model.is_empty() { "" } else { &blocks };
+            let mean_radius_m = 0.5 * span_m;
+            format!(
+                "[arch]\nmean_radius_m = {mean_radius_m}\nthickness_m = {thickness_m}\nembrace_deg = {embrace_deg}\n{cut}"
+            )
+        }
+        1 => format!(
+            "[pointed_arch]\nspan_m = {span_m}\nrise_m = {high}\nthickness_m = {thickness_m}\n{blocks}"
+        ),
+        2 => format!(
+            "[elliptic_arch]\nspan_m = {span_m}\nrise_m = {low}\nthickness_m = {thickness_m}\n{blocks}"
+        ),
+        _ => {
+            let drums = if model.is_empty() { "" } else { "drums = 3\n" };
+            format!("[column]\nheight_m = {span_m}\nwidth_m = {width_m}\n{drums}")
+        }
+    };
+    let kind = Pulse::ALL[random.pick(Pulse::ALL.len())].name();
+    let (amplitude_g, duration_s) = (random.within(-0.9, 0.9), random.within(0.1, 0.9));
+    format!(
+        "{structure}{model}\n[ground.{kind}]\namplitude_g = {amplitude_g}\nduration_s = {duration_s}\n\
+         [simulation]\nduration_s = 1.5\n"
+    )
 }
 
 /// Answers the browser, and passes on the verdict that the page sends.
@@ -256,7 +314,72 @@ fn the_page_computes_the_bits_of_the_program() {
             .unwrap()
             .contains("152 impacts")
     );
+    assert_eq!(rows_of_blocks(&all), 7);
     assert_page("bits", false, &[], &json!(all), 45);
+}
+
+/// The number of cases whose model is a row of blocks: their results have the same bits everywhere.
+fn rows_of_blocks(cases: &[Value]) -> usize {
+    let is_row = |case: &&Value| {
+        let text = case["scenario"].as_str().unwrap();
+        text.contains("[free_hinges]") || text.contains("[elastic_joints]")
+    };
+    cases.iter().filter(is_row).count()
+}
+
+/// So for forty random scenarios, of all shapes, pulses and models.
+#[test]
+fn the_page_computes_the_bits_of_the_program_for_forty_random_scenarios() {
+    if pages().is_none() {
+        return;
+    }
+    let mut random = Random(40);
+    let mut all = Vec::new();
+    while all.len() < 40 {
+        let text = random_scenario(&mut random);
+        if let Some(expected) = try_computed("run", &text, &[], true) {
+            all.push(json!({ "name": all.len(), "study": "run", "scenario": text, "files": {}, "expected": expected }));
+        }
+    }
+    assert!((15..35).contains(&rows_of_blocks(&all)));
+    for outcome in ["rest", "overturned", "never_moved"] {
+        let has = |case: &Value| case["expected"]["summary"]["outcome"] == outcome;
+        assert!(all.iter().any(has), "{outcome}");
+    }
+    assert_page("bits", false, &[], &json!(all), 120);
+}
+
+/// The reaction in hand holds the arch up to the push of the program's limit analysis. There its line passes through all four hinges, of which three
+/// give it; and beyond it no reaction is left, wherever its foot is.
+#[test]
+fn statics_end_at_the_first_motion_of_limit_analysis() {
+    if pages().is_none() {
+        return;
+    }
+    let basket = "[basket_arch]\nspan_m = 10\nrise_m = 3.5\nthickness_m = 0.7\nvoussoirs = 21\n";
+    let given = [
+        file("free-hinges.toml"),
+        file("pointed-arch-on-piers.toml"),
+        basket.to_owned(),
+    ];
+    let mut random = Random(4);
+    let others = std::iter::repeat_with(|| random_scenario(&mut random));
+    let others = others.filter(|text| text.contains("voussoirs"));
+    let cases = given.into_iter().chain(others).filter_map(|text| {
+        let ground = if text.contains("[ground") {
+            ""
+        } else {
+            "[ground.half_sine]\namplitude_g = 0.2\nduration_s = 0.3\n"
+        };
+        let text = format!("{text}{ground}");
+        let limit = try_computed("limit", &text, &[], true)?;
+        let starts_g = &limit["summary"]["incipient_acceleration_g"];
+        let starts_g = [starts_g["right"].as_f64()?, starts_g["left"].as_f64()?];
+        // Four links have other limits where they may open anywhere.
+        Some(json!({ "scenario": text, "starts_g": starts_g }))
+    });
+    let cases = cases.take(12).collect::<Vec<_>>();
+    assert_page("statics", false, &[], &json!(cases), 150);
 }
 
 /// Sliders, choices, text, records, links, broken input, studies, stops and a page that is closed.

@@ -102,50 +102,20 @@ const SLIDERS = {
 
 /** Returns the first scenario with other numbers or another model. */
 const startWith = (...changes) => changes.reduce((text, [from, to]) => text.replace(from, to), START.slice(START.indexOf("[arch]")));
-const DRUMS = (amplitude_g) => `[column]
-height_m = 5.95
-width_m = 1.11
-top_width_m = 0.90
-drum_heights_m = [0.82, 0.82, 0.82, 0.82, 0.82, 0.82, 0.82, 0.21]
-density_kg_m3 = 2620.0
-
-[free_hinges]
-
-[ground.step_pair]
-amplitude_g = ${amplitude_g}
-duration_s = 0.35
-
-[simulation]
-duration_s = 30.0
-direction = "as_given"
-`;
-const PIERS = `[pointed_arch]
-span_m = 6.0
-rise_m = 4.0
-thickness_m = 0.6
-voussoirs = 14
-
-[piers]
-height_m = 3.0
-width_m = 1.6
-blocks = 2
-
-[free_hinges]
-
-[ground.half_sine]
-amplitude_g = -0.35
-duration_s = 0.6
-`;
+/** The examples of the recipes: title, scenario, study. */
+const EXAMPLES = JSON.parse(document.getElementById("examples").textContent);
+/** Returns the scenario of an example, under a pulse of this amplitude. */
+const exampleWith = (amplitude_g, start) => EXAMPLES.find(({ title }) => title.startsWith(start)).scenario.replace(/(amplitude_g = )\S+/, `$1${amplitude_g}`);
 
 /** The questions: title, a sentence, its document, the scenarios to compare, and a study. Without scenarios the reader gives a file. */
 const QUESTIONS = [
   ["Which push fells it?", "At 0.38 g this arch comes back, at 0.39 g it falls. A search then finds the first push that fells it, and marks it at the slider.", "choose",
     [startWith(["36", "16"], ["-0.35", "-0.38"]), startWith(["36", "16"], ["-0.35", "-0.39"])], "threshold"],
-  ["Stronger, yet it survives", "A push of 0.47 g fells this column of drums, one of 0.60 g does not: surviving one motion is no safety margin.", "questions", [DRUMS(0.47), DRUMS(0.6)]],
+  ["Stronger, yet it survives", "A push of 0.47 g fells this column of drums, one of 0.60 g does not: surviving one motion is no safety margin.", "questions", [0.47, 0.6].map((amplitude_g) => exampleWith(amplitude_g, "Column of drums"))],
   ["Twice as large", "The pulse that fells an arch of 5 m radius does not fell one of 10 m with the same shape. Size helps.", "maps",
     [startWith(["-0.35", "-0.45"]), startWith(["-0.35", "-0.45"], ["5.0", "10.0"])]],
   ["Four hinges or all joints?", "Four fixed hinges are fast to compute, but stone opens at any joint: compare both answers.", "choose", [startWith(["[free_hinges]\n\n", ""]), startWith()]],
-  ["On piers", "An arch rarely stands on the ground. Piers sway with it, and turn about their toes.", "shapes", [PIERS]],
+  ["On piers", "An arch rarely stands on the ground. Piers sway with it, and turn about their toes.", "shapes", [exampleWith(-0.35, "Pointed arch on piers")]],
   ["Your record", "Choose or drop a file of ground accelerations: AT2 of PEER, ASC of ESM, or a table.", "records", null],
 ];
 

@@ -48,10 +48,9 @@ for (const [title, sentence, name, texts, study] of QUESTIONS) {
   find("questions").append(card);
 }
 
-const examples = JSON.parse(find("examples").textContent);
-fill(find("example"), examples.map(({ title }, number) => [number, title]));
+fill(find("example"), EXAMPLES.map(({ title }, number) => [number, title]));
 find("example").addEventListener("change", () => {
-  const { scenario, study } = examples[find("example").value];
+  const { scenario, study } = EXAMPLES[find("example").value];
   find("example").value = "";
   open([scenario], STUDIES.some(([name]) => name === study) ? study : null);
 });
@@ -87,6 +86,7 @@ try {
   });
   askStudy = createQueue(module, work("study-"));
   askFile = createQueue(module, work("save-"));
+  askStatics = createQueue(module, helperElements());
   startHelpers(module);
   showSteps(steps.undone);
   write("replaceState");

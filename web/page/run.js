@@ -165,6 +165,7 @@ const REPEATED = { no_repeat: false, pause_ms: PAUSE_MS };
 async function computeRun(isPassing = false) {
   const change = ++changes;
   markStudy();
+  showStatics();
   // What was wrong with an earlier text.
   for (const part of ["study-", "save-"]) if (find(`${part}stop`).hidden) find(`${part}status`).textContent = "";
   for (const { pause_ms, ...round } of isPassing ? [WHOLE] : [FIRST_SWAYS, WHOLE, REPEATED]) {

@@ -55,10 +55,13 @@ function mapTexts() {
 /** Queues of workers that compute cells of maps beside each other; they show nothing. */
 const helpers = [];
 
+/** Elements of a queue that shows nothing. */
+const helperElements = () => ["span", "progress", "button"].map((name) => document.createElement(name));
+
 function startHelpers(module) {
   const count = Math.min(navigator.hardwareConcurrency || 1, 4);
   for (let i = 0; i < count; i += 1) {
-    const hidden = ["span", "progress", "button"].map((name) => document.createElement(name));
+    const hidden = helperElements();
     helpers.push({ ask: createQueue(module, hidden), stop: () => hidden[2].click() });
   }
   find("study-stop").addEventListener("click", stopHelpers);

@@ -10,15 +10,17 @@ use std::panic;
 use std::path::PathBuf;
 use std::slice;
 
+use archrock::mechanics::stability::onset;
+use archrock::mechanics::{Edge, Supports};
 use archrock::output::Figure;
 use archrock::scenario::{ReadOptions, Scenario, ScenarioErrors, Source};
 use archrock::studies::run::Sinks;
 use archrock::studies::{
     Computation, Options, Progress, Study as _, StudyError, StudyKind, Style, Work,
 };
-use archrock::{Directions, OverturningMap, Runner};
+use archrock::{Directions, OverturningMap, Runner, Sway};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// A study of a scenario.
 #[derive(Deserialize)]
@@ -46,6 +48,9 @@ struct Request {
     cells: Option<Vec<usize>>,
     /// All rows of a map, which are computed already, as JSON; `None` to compute them.
     rows: Option<Vec<String>>,
+    /// Whether to answer with the statics alone.
+    #[serde(default)]
+    statics: bool,
 }
 
 /// The answer to a request.
@@ -69,6 +74,9 @@ struct Answer {
     /// The rows of these cells, as JSON: numbers in JavaScript would lose the sign of zero.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     rows: Vec<String>,
+    /// The statics of an arch of blocks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    statics: Option<Value>,
     /// The errors; empty for a result.
     errors: Vec<PlacedError>,
 }
@@ -145,7 +153,7 @@ fn answer_to(request: Request) -> Answer {
     let source = Source::of_text(&request.scenario, "scenario.toml").with_files(files);
     let kind = request.study.as_deref().map(StudyKind::of_name);
     let options = ReadOptions {
-        statics: matches!(kind, Some(Some(kind)) if !kind.needs_motion),
+        statics: request.statics || matches!(kind, Some(Some(kind)) if !kind.needs_motion),
         ..ReadOptions::default()
     };
     let scenario = match Scenario::of(&source, &options) {
@@ -154,7 +162,10 @@ fn answer_to(request: Request) -> Answer {
     };
     let json = scenario.to_json();
     let mut answer = match kind {
-        None => Answer::default(),
+        None => Answer {
+            statics: request.statics.then(|| statics(&scenario)).flatten(),
+            ..Answer::default()
+        },
         Some(None) => Answer::of_error("there is no such study".to_owned()),
         Some(Some(kind)) => {
             let mut options = request.options;
@@ -176,6 +187,41 @@ fn answer_to(request: Request) -> Answer {
     };
     answer.scenario = json;
     answer
+}
+
+/// Returns what a thrust line drawn by hand needs: corners of the joints (intrados, extrados) and outlines of the blocks in metres, their centres with
+/// their weights in N, and the first motions to both sides with their hinges (joint; 0 at the intrados, 1 at the extrados) and velocities. `None` if the
+/// structure is not a row of blocks between two springings that its weight alone holds.
+fn statics(scenario: &Scenario) -> Option<Value> {
+    let row = scenario.structure.row().ok()?;
+    let is_plain = row.supports == Supports::Both && row.ties.is_empty();
+    if !is_plain || scenario.motion.supports().is_some() {
+        return None;
+    }
+    let first_motion = |sway| {
+        let onset = onset(&row, sway).ok()??;
+        let hinges = onset.openings.iter().map(|opening| {
+            let is_extrados = opening.hinge == Some(Edge::Extrados);
+            (opening.joint, usize::from(is_extrados))
+        });
+        let velocities = onset.velocities.iter();
+        let velocities = velocities.map(|twist| (twist.at_center, twist.rate));
+        Some(json!({
+            "acceleration_g": onset.acceleration_g,
+            "hinges": hinges.collect::<Vec<_>>(),
+            "velocities": velocities.collect::<Vec<_>>(),
+        }))
+    };
+    let joints = row.joints.iter();
+    let corners = joints.map(|joint| [joint.intrados_m, joint.extrados_m]);
+    let blocks = row.blocks.iter();
+    let weights = blocks.map(|block| (block.centre_m, block.mass_kg * scenario.gravity_m_s2()));
+    Some(json!({
+        "joints": corners.collect::<Vec<_>>(),
+        "blocks": weights.collect::<Vec<_>>(),
+        "outlines": row.outlines_m,
+        "first_motions": [first_motion(Sway::Right)?, first_motion(Sway::Left)?],
+    }))
 }
 
 /// Returns a scenario whose history ends soon after the ground motion, in its first direction. Most of the work of a history is its decay.

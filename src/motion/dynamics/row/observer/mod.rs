@@ -173,7 +173,8 @@ impl<'a> MotionObserver<'a> {
             }
         }
         let least_n = &mut self.row_summary.least_normal_n;
-        *least_n = least_n.min(least / lasts_s);
+        // Machines differ in the smaller one of the two zeros: the sum is the positive one.
+        *least_n = least_n.min(least / lasts_s) + 0.0;
         self.note_friction(friction, lasts_s);
         friction
     }
