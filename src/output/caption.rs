@@ -39,7 +39,7 @@ fn varied_key(axis: &Axis) -> String {
             format!("arch.{name}")
         }
         Quantity::Restitution => format!("impact.{name}"),
-        Quantity::Frequency => "ground.pulse.duration_s".to_owned(),
+        Quantity::Frequency | Quantity::VelocityRatio => "ground.pulse.duration_s".to_owned(),
         Quantity::Duration | Quantity::Amplitude => format!("ground.pulse.{name}"),
         Quantity::Scale | Quantity::PeakG => "ground.record.scale".to_owned(),
     }

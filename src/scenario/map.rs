@@ -30,6 +30,8 @@ named! {
         Duration = "duration_s",
         /// Frequency of the pulse, the reciprocal of its duration.
         Frequency = "frequency_hz",
+        /// Peak velocity over peak acceleration of the pulse, which gives its duration.
+        VelocityRatio = "pgv_over_pga_s",
         /// Mean radius of the arch; the thickness ratio is constant.
         MeanRadius = "mean_radius_m",
         /// Thickness over mean radius.
@@ -48,11 +50,25 @@ named! {
 }
 
 impl Quantity {
+    /// Duration that a value of this quantity gives a pulse, in s; `None` for other quantities.
+    pub(crate) fn duration_s(self, value: f64, pulse: &PulseGround) -> Option<f64> {
+        match self {
+            Self::Duration => Some(value),
+            Self::Frequency => Some(1.0 / value),
+            Self::VelocityRatio => {
+                let ratio = pulse.shape().velocity_ratio();
+                Some(value / ratio.expect("the pulse of a scenario has numbers in their ranges"))
+            }
+            _ => None,
+        }
+    }
+
     /// Range of the same key in its own table.
     const fn range(self) -> &'static Number {
         match self {
             Self::Duration => &DURATION_S,
             Self::Frequency => &FREQUENCY_HZ,
+            Self::VelocityRatio => &DURATION_S,
             Self::MeanRadius => &MAGNITUDE,
             Self::ThicknessRatio => &THICKNESS_RATIO,
             Self::Embrace => &EMBRACE_DEG,
@@ -78,7 +94,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Key of the scenario that the axis sets; the values of a frequency set its reciprocal.
+    /// Key of the scenario that the axis sets; for the values of a duration see [`Quantity::duration_s`].
     pub(crate) fn path(&self, ground: Option<&Ground>) -> String {
         let of_ground = |key: &str| {
             let kind = ground.map_or(RECORD, Ground::kind);
@@ -86,7 +102,9 @@ impl Axis {
         };
         match self.quantity {
             Quantity::Other => self.key.clone(),
-            Quantity::Duration | Quantity::Frequency => of_ground(DURATION),
+            Quantity::Duration | Quantity::Frequency | Quantity::VelocityRatio => {
+                of_ground(DURATION)
+            }
             Quantity::Amplitude | Quantity::Scale | Quantity::PeakG => of_ground(&self.key),
             Quantity::MeanRadius | Quantity::ThicknessRatio | Quantity::Embrace => {
                 format!("arch.{}", self.key)
@@ -187,9 +205,21 @@ impl Map {
                 keys.join(", ")
             )));
         };
-        let are_inverse = (x.quantity, y.quantity) == (Quantity::Duration, Quantity::Frequency);
-        let wrong = "cannot be combined with `duration_s`, its inverse; give one of them";
-        table.refuse(are_inverse, "frequency_hz", wrong)?;
+        let gives_duration = |axis: &Axis| {
+            matches!(
+                axis.quantity,
+                Quantity::Duration | Quantity::Frequency | Quantity::VelocityRatio
+            )
+        };
+        if gives_duration(&x) && gives_duration(&y) {
+            let wrong = format!(
+                "cannot be combined with `{}`: both give the duration of the pulse",
+                x.key
+            );
+            table.refuse(true, &y.key, &wrong)?;
+        }
+        let of_shape = y.quantity == Quantity::VelocityRatio && x.key.starts_with("ground.");
+        table.refuse(of_shape, &y.key, "goes with `amplitude_g` or a key of another table than [ground], which may change the shape of the pulse")?;
         let cells = x.sequence.values().len() * y.sequence.values().len();
         let wrong = format!("has {cells} cells; at most {MAX_CELLS} are allowed");
         table.refuse_all(cells > MAX_CELLS, wrong)?;
@@ -207,14 +237,14 @@ impl Map {
     ) -> Result<(), String> {
         let missing = "[map] needs a ground motion: give a table [ground.<kind>], such as [ground.rectangular], or [ground.record]";
         let ground = ground.ok_or(missing)?;
-        use Quantity::{Amplitude, Duration, Frequency, PeakG, Scale};
+        use Quantity::{Amplitude, Duration, Frequency, PeakG, Scale, VelocityRatio};
         let axes = [&self.x, &self.y];
         for axis in axes {
             let wrong = match (axis.quantity, ground) {
                 (Scale | PeakG, Ground::Pulse(_)) => {
                     "goes with a record, and [ground] has a pulse: the axis of its strength is `amplitude_g`"
                 }
-                (Duration | Frequency | Amplitude, Ground::Record(_)) => {
+                (Duration | Frequency | VelocityRatio | Amplitude, Ground::Record(_)) => {
                     "goes with a pulse, and [ground] has a record: the axes of its strength are `scale` and `peak_g`"
                 }
                 _ => continue,
@@ -224,16 +254,14 @@ impl Map {
         let (what, end_s) = match ground {
             Ground::Record(record) => ("a record that lasts", record.end_s()),
             Ground::Pulse(pulse) => {
-                let longest_s = axes.into_iter().find_map(|axis| {
+                let durations_s = axes.into_iter().flat_map(|axis| {
                     let values = axis.sequence.values();
-                    match axis.quantity {
-                        Duration => values.last().copied(),
-                        Frequency => values.first().map(|frequency_hz| 1.0 / frequency_hz),
-                        _ => None,
-                    }
+                    let ends = [values.first(), values.last()].into_iter().flatten();
+                    let given_s = ends.map(|value| axis.quantity.duration_s(*value, pulse));
+                    given_s.flatten().collect::<Vec<_>>()
                 });
                 let longest = PulseGround {
-                    duration_s: longest_s.unwrap_or(pulse.duration_s),
+                    duration_s: durations_s.reduce(f64::max).unwrap_or(pulse.duration_s),
                     ..pulse.clone()
                 };
                 ("pulses that last", longest.ground_motion(1.0).end_s())

@@ -39,6 +39,13 @@ fn run(folder: &Path, page: &str, row: &Row) -> Value {
         .replace("{cell.x}", &x.to_string())
         .replace("{cell.y}", &y.to_string())
         .replace("{1/cell.x}", &(1.0 / x).to_string());
+    let multiple = |(before, after): (&str, &str)| {
+        let (before, factor) = before.rsplit_once('{').unwrap();
+        format!("{before}{}{after}", x * factor.parse::<f64>().unwrap())
+    };
+    let filled = filled
+        .split_once("*cell.x}")
+        .map_or(filled.clone(), multiple);
     let own = env!("CARGO_BIN_EXE_archrock");
     let has_joints = filled.contains("[free_hinges]") || filled.contains("[elastic_joints]");
     let repeat = if has_joints { " --no-repeat" } else { "" };
@@ -64,6 +71,10 @@ fn commands_run_their_cells() {
         (
             "frequency_hz = [0.8, 4.0]\namplitude_g = [0.5, 3.0]\n",
             &["--hinges", "four"],
+        ),
+        (
+            "pgv_over_pga_s = [0.05, 0.2]\namplitude_g = [0.5, 3.0]\n",
+            &[],
         ),
         ("mean_radius_m = [2.0, 20.0]\namplitude_g = [0.5]\n", &[]),
         (

@@ -3,6 +3,7 @@
 use crate::common;
 use crate::common::parsed;
 use crate::common::prose::golden;
+use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command};
@@ -92,6 +93,28 @@ fn the_frequency_is_the_inverse_of_the_duration() {
     );
     for (index, other) in [(0, 2), (1, 3), (2, 0), (3, 1)] {
         assert_eq!(ending(&by_duration, index), ending(&by_frequency, other));
+    }
+}
+
+/// A half sine of duration t has the peak velocity 2 / pi a t.
+#[test]
+fn the_velocity_ratio_gives_the_duration() {
+    let text = |map: &str| {
+        parsed(&format!(
+            "{ARCH}[ground.half_sine]\namplitude_g = 0.4\nduration_s = 0.5\n[map]\n{map}"
+        ))
+    };
+    let by_duration = text("duration_s = [0.25, 0.5]\namplitude_g = [0.4, 0.9]");
+    let ratios_s = [0.25, 0.5].map(|duration_s| 2.0 / PI * duration_s);
+    let by_ratio = text(&format!(
+        "pgv_over_pga_s = {ratios_s:?}\namplitude_g = [0.4, 0.9]"
+    ));
+    let maps = [&by_duration, &by_ratio].map(|scenario| OverturningMap::of(scenario).unwrap());
+    for index in 0..4 {
+        let [own, other] = maps.each_ref().map(|map| ending(map, index));
+        assert_eq!((own.outcome, own.impacts), (other.outcome, other.impacts));
+        let [own, other] = [own, other].map(|ending| ending.peak_over_critical.unwrap());
+        assert!((own / other - 1.0).abs() < 1e-6, "{own} {other}");
     }
 }
 
@@ -613,7 +636,20 @@ fn errors_of_a_map_name_their_place_and_remedy() {
         "8:1",
         &["exactly two"],
     );
-    assert_error(&both("frequency_hz = [1]"), "10:16", &["inverse"]);
+    for other in ["frequency_hz", "pgv_over_pga_s"] {
+        let column = other.len() + 4;
+        let expected = ["both give the duration", "duration_s"];
+        assert_error(
+            &both(&format!("{other} = [1]")),
+            &format!("10:{column}"),
+            &expected,
+        );
+    }
+    assert_error(
+        "pgv_over_pga_s = [1]\n\"ground.gabor.gamma\" = [2]",
+        "9:18",
+        &["change the shape of the pulse"],
+    );
     assert_error(
         &both("amplitude_g = [2, 1]"),
         "10:15",

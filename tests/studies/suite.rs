@@ -1707,7 +1707,7 @@ fn records_act_once_without_levels() {
     // Both axes are logarithmic: distances on the sheet are proportional to those of the logarithms.
     for (axis, sign) in [(0, 1.0), (1, -1.0)] {
         let value = |at: usize| match places[at].1 {
-            (peak_g, _) if axis == 0 => peak_g.ln(),
+            (peak_g, _) if axis == 1 => peak_g.ln(),
             (_, duration_s) => (duration_s / PI).ln(),
         };
         let px = |at: usize| sign * all[at][axis];

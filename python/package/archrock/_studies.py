@@ -747,7 +747,7 @@ def overturning_map(
     Args:
         of: the structure, or a scenario with a table ``[map]``, which gives everything else.
         ground: the ground motion; its other values do not vary.
-        axes: two of the keys of ``[map]`` with increasing values: ``duration_s``, ``frequency_hz``, ``mean_radius_m``,
+        axes: two of the keys of ``[map]`` with increasing values: ``duration_s``, ``frequency_hz``, ``pgv_over_pga_s``, ``mean_radius_m``,
             ``thickness_ratio``, ``embrace_deg``, ``restitution``, ``amplitude_g``, for a record ``scale`` or ``peak_g``,
             or any number of the scenario by its table and key, such as ``column.width_m``.
         repeat: with free hinges, true: repeats every cell in full and counts its outcomes in the column ``outcomes``.

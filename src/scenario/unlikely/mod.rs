@@ -13,7 +13,7 @@ use serde::Deserialize;
 use self::usual::{USUAL, Usual, usual_forces};
 use super::prelude::*;
 use super::structure::bounds_m;
-use super::{MotionModel, Quantity, Scenario, Structure};
+use super::{Ground, MotionModel, Scenario, Structure};
 use crate::Model;
 use crate::mechanics::MasonryShape;
 
@@ -275,8 +275,11 @@ impl Numbers {
             let path = axis.path(scenario.ground.as_ref());
             let values = axis.sequence.values();
             let ends = [values.first(), values.last()].into_iter().flatten();
-            let inverse = axis.quantity == Quantity::Frequency;
-            let ends = ends.map(|value| if inverse { 1.0 / value } else { *value });
+            let duration_s = |value: f64| match &scenario.ground {
+                Some(Ground::Pulse(pulse)) => axis.quantity.duration_s(value, pulse),
+                _ => None,
+            };
+            let ends = ends.map(|value| duration_s(*value).unwrap_or(*value));
             self.0.extend(ends.map(|value| (path.clone(), value)));
         }
         let uncertain = json!(scenario.uncertain);

@@ -85,11 +85,15 @@ pub struct OverturningMap<'a> {
     variants: Option<PerAxes<Result<Arc<Scenario>, String>>>,
 }
 
+/// Label of the ratio of peak velocity and peak acceleration of the ground.
+pub(super) const VELOCITY_RATIO_LABEL: &str = "peak velocity / peak acceleration (s)";
+
 /// Label of an axis in pictures.
 pub(super) fn label(axis: &Axis) -> &str {
     match axis.quantity {
         Quantity::Duration => "pulse duration (s)",
         Quantity::Frequency => "pulse frequency (Hz)",
+        Quantity::VelocityRatio => VELOCITY_RATIO_LABEL,
         Quantity::Amplitude => "pulse amplitude (g)",
         Quantity::Scale => "factor on the record",
         Quantity::PeakG => "peak ground acceleration (g)",
@@ -118,7 +122,7 @@ impl Changes {
     fn of(quantity: Quantity, path: &str) -> Self {
         match quantity {
             Quantity::Amplitude | Quantity::Scale | Quantity::PeakG => Self::Strength,
-            Quantity::Duration | Quantity::Frequency => Self::Duration,
+            Quantity::Duration | Quantity::Frequency | Quantity::VelocityRatio => Self::Duration,
             _ if path.starts_with("ground.") => Self::Ground,
             _ => Self::Model,
         }
@@ -305,8 +309,9 @@ impl<'a> OverturningMap<'a> {
         let motion = match scenario.ground.as_ref() {
             Some(Ground::Pulse(pulse)) => {
                 let shape = self.pulses.get_or_make(self.axis_indices(index), || {
-                    let of_frequency = value(Quantity::Frequency).map(f64::recip);
-                    let duration_s = of_frequency.or(value(Quantity::Duration));
+                    let mut given = self.quantities.iter().zip(self.coordinates(index));
+                    let duration_s =
+                        given.find_map(|(quantity, value)| quantity.duration_s(value, pulse));
                     let mut pulse = pulse.clone();
                     pulse.duration_s = duration_s.unwrap_or(pulse.duration_s);
                     pulse.shape()

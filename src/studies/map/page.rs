@@ -12,7 +12,7 @@ use super::{CellRow, OverturningMap, label};
 use crate::output::caption::caption;
 use crate::output::page::{BASE, PROGRAM, STYLE, script_safe};
 use crate::output::{Figure, filters, render};
-use crate::scenario::Quantity;
+use crate::scenario::{Ground, Quantity};
 use crate::studies::Statement;
 use crate::studies::ending::columns::NUMBERS;
 use crate::studies::page::{assumptions, text_without_studies};
@@ -181,9 +181,13 @@ fn command(map: &OverturningMap<'_>) -> String {
     let set: String = set
         .zip(["cell.x", "cell.y"])
         .map(|((axis, path), place)| {
-            let of_value = match axis.quantity {
-                Quantity::Frequency => "1/",
-                _ => "",
+            let of_value = match (axis.quantity, &map.base.ground) {
+                (Quantity::Frequency, _) => "1/".to_owned(),
+                (Quantity::VelocityRatio, Some(Ground::Pulse(pulse))) => {
+                    let duration_s = axis.quantity.duration_s(1.0, pulse);
+                    format!("{}*", duration_s.unwrap_or(1.0))
+                }
+                _ => String::new(),
             };
             format!(" --set {path}={{{of_value}{place}}}")
         })

@@ -3,6 +3,7 @@
 use super::{CaseRow, Heading, SuiteFragility};
 use crate::output::page::{Spot, SpotKind};
 use crate::output::{Chart, Figure, Key, Mark, Scale, Shape, Sign, Stroke, color};
+use crate::studies::map::VELOCITY_RATIO_LABEL;
 use crate::studies::page_cases::kind_of;
 
 /// Mark of an outcome: radius and stroke of its circle. An overturned case is a dot.
@@ -24,7 +25,8 @@ const MARKS: [(SpotKind, f64, Stroke); 4] = [
 /// Factor from the outermost marks to the ends of an axis.
 const MARGIN: f64 = 1.1;
 
-/// Draws the ratio of peak velocity and peak acceleration over the peak acceleration. On a page every case has a mark of its own.
+/// Draws the peak acceleration over the ratio of peak velocity and peak acceleration, the axes of a map of pulses. On a page every case has a mark of
+/// its own.
 pub(super) fn draw(
     figure: Figure,
     heading: &Heading,
@@ -35,7 +37,7 @@ pub(super) fn draw(
     let at = |case: &CaseRow| {
         let [velocity_m_s, ..] = case.intensities();
         let ratio_s = velocity_m_s.unwrap_or(0.0) / (case.peak_g * gravity_m_s2);
-        (case.peak_g, ratio_s)
+        (ratio_s, case.peak_g)
     };
     let all: Vec<(f64, f64)> = results.cases.iter().map(at).collect();
     // Measures of records spread over decades.
@@ -49,12 +51,9 @@ pub(super) fn draw(
             false => Scale::exactly(0.0, 1.0, figure.ticks(8)),
         }
     };
-    let x_axis = (
-        "peak ground acceleration (g)",
-        scale(&mut all.iter().map(|at| at.0)),
-    );
+    let x_axis = (VELOCITY_RATIO_LABEL, scale(&mut all.iter().map(|at| at.0)));
     let y_axis = (
-        "peak velocity / peak acceleration (s)",
+        "peak ground acceleration (g)",
         scale(&mut all.iter().map(|at| at.1)),
     );
     let mut chart = Chart::new(480.0, x_axis, y_axis);
@@ -62,7 +61,7 @@ pub(super) fn draw(
     chart.marks.extend(marked);
     for (kind, radius_px, stroke) in MARKS.into_iter().filter(|_| spots.is_empty()) {
         let of_kind = results.cases.iter().zip(&all);
-        let of_kind = of_kind.filter(|(case, at)| kind_of(case.verdict()) == kind && at.1 > 0.0);
+        let of_kind = of_kind.filter(|(case, at)| kind_of(case.verdict()) == kind && at.0 > 0.0);
         let circle = |(_, at): (&CaseRow, &(f64, f64))| {
             Mark::new(kind.name(), stroke, Shape::Circle(*at, radius_px))
         };

@@ -7,8 +7,9 @@ use nalgebra::Vector2;
 
 use super::error::{ACCELERATION_M_S2, DURATION_S, GroundError, TIME_S};
 use super::motion::GroundMotion;
-use super::piece::Formula;
+use super::piece::{Formula, GroundPiece};
 use super::shape::{Gabor, Sine, WaveTrain, Waveform};
+use super::velocity::GroundVelocity;
 use crate::argument::require_within;
 
 named! {
@@ -133,6 +134,25 @@ impl PulseShape {
     pub fn with_train(self, train: WaveTrain) -> Self {
         let cut = OnceLock::new();
         Self { train, cut, ..self }
+    }
+
+    /// Peak velocity over peak acceleration, over the duration: a number of the shape alone.
+    ///
+    /// # Errors
+    /// When a number of the pulse is outside its range.
+    pub fn velocity_ratio(&self) -> Result<f64, GroundError> {
+        let ground = self.horizontal_m_s2(1.0)?;
+        let velocity = GroundVelocity::new(&ground);
+        // The velocities are exact, and flat at a maximum between corners: that of the samples is too small by less than 1e-6 of itself.
+        let times_s = |piece: &GroundPiece| {
+            let (start_s, lasts_s) = (piece.start_s, piece.end_s - piece.start_s);
+            (0..=1000).map(move |sample| start_s + lasts_s * f64::from(sample) / 1e3)
+        };
+        let pieces = ground.pieces.iter().filter(|piece| piece.end_s.is_finite());
+        let speeds_m_s = pieces
+            .flat_map(times_s)
+            .map(|time_s| velocity.velocity_at(time_s).x.abs());
+        Ok(speeds_m_s.fold(0.0, f64::max) / self.duration_s)
     }
 
     /// Ground motion with this horizontal peak acceleration (at most 1e12 in magnitude, positive to the right).
@@ -294,6 +314,26 @@ mod tests {
                         .map(|phase_rad| (pulse, WaveTrain { cycles, phase_rad }))
                 })
         })
+    }
+
+    /// Against integrals by hand: a constant for the duration, half a period of a sine, a period of a sine and of a cosine, a triangle.
+    #[test]
+    fn the_velocity_ratio_is_that_of_the_integral() {
+        let exact = [
+            (Pulse::Rectangular, 1.0),
+            (Pulse::StepPair, 1.0),
+            (Pulse::HalfSine, 2.0 / PI),
+            (Pulse::OneSine, 1.0 / PI),
+            (Pulse::OneCosine, 0.5 / PI),
+            (Pulse::Triangular, 0.5),
+        ];
+        for (pulse, ratio) in exact {
+            for duration_s in [0.01, 0.7, 30.0] {
+                let shape = pulse.lasting_s(duration_s).starting_at_s(0.4);
+                let found = shape.velocity_ratio().unwrap();
+                assert!((found / ratio - 1.0).abs() < 1e-6, "{pulse:?}: {found}");
+            }
+        }
     }
 
     #[test]

@@ -47,11 +47,11 @@
     find("command").textContent = command(column, line);
   }
 
-  /** Places of values in the command: `{cell.x}`, or `{1/cell.x}` of its inverse. */
+  /** Places of values in the command: `{cell.x}`, `{1/cell.x}` of its inverse, or `{2*cell.x}` of a multiple. */
   function command(column, line) {
     const values = { x: xs[column], y: ys[line] };
-    const filled = (_, inverse, axis) => String(inverse ? 1 / values[axis] : values[axis]);
-    return data.command.replace(/\{(1\/)?cell\.([xy])\}/g, filled);
+    const filled = (_, inverse, factor, axis) => String(inverse ? 1 / values[axis] : (factor ?? 1) * values[axis]);
+    return data.command.replace(/\{(1\/)?(?:([\d.e-]+)\*)?cell\.([xy])\}/g, filled);
   }
 
   function cellAt(event) {
