@@ -235,10 +235,11 @@ fn command_again(command: &str, again: &str) -> String {
     command.replace("FILE", again)
 }
 
-/// Returns the place of the results of a study in a folder.
-pub fn describe(folder: &Folder, kind: StudyKind, results: &Results) -> Place {
-    let mut names = kind.files.iter().filter(|name| name.ends_with(".html"));
-    let page = names.find(|name| kind.streams_tables || results.names().contains(name));
+/// Returns the place of the results of a study in a folder. `has_page` is false if the user wants none.
+pub fn describe(folder: &Folder, kind: StudyKind, results: &Results, has_page: bool) -> Place {
+    let names = kind.files.iter().filter(|name| name.ends_with(".html"));
+    let mut pages = names.filter(|_| has_page);
+    let page = pages.find(|name| kind.streams_tables || results.names().contains(name));
     let page = page.map_or_else(|| folder.path().to_owned(), |page| folder.path().join(page));
     Place {
         files: in_words(folder, results),

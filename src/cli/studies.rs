@@ -158,7 +158,7 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     folder.check(kind.files)?;
     results.write(&folder)?;
     publish(&folder)?;
-    let place = describe(&folder, kind, &results);
+    let place = describe(&folder, kind, &results, true);
     let found = CommandResults::alone(merged.model, results, place);
     match arguments.format {
         Format::Json => print(&pretty(&found.summary(kind)?)),

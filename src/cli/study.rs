@@ -18,7 +18,7 @@ use archrock::studies::{
 use super::Failure;
 use super::interrupts::{INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts, uninterrupted};
 use super::progress::{Display, print_always, print_status};
-use super::results::{CommandResults, ModelResults, SampleResults, describe};
+use super::results::{CommandResults, ModelResults, Place, SampleResults, describe};
 
 /// Options of long computations.
 #[derive(clap::Args, Clone, Copy, Default)]
@@ -299,7 +299,7 @@ impl StudyJob {
             if let Some(results) =
                 self.compute(*samples, slice::from_ref(scenario), Some(&folder), &[])?
             {
-                models.push((model, describe(&folder, *samples, &results)));
+                models.push((model, self.place(&folder, *samples, &results)));
                 of_samples.push(results);
             }
         }
@@ -328,7 +328,7 @@ impl StudyJob {
             model: scenarios[0].motion.kind,
             compared: self.compare(kind, &models, folder)?,
             samples: of_samples,
-            place: folder.map(|folder| describe(folder, kind, &own)),
+            place: folder.map(|folder| self.place(folder, kind, &own)),
             own,
         }))
     }
@@ -348,6 +348,10 @@ impl StudyJob {
         let mut results = results.map_err(StudyError::from)?;
         self.write(&mut results, &comparison_folder(folder, kind))?;
         Ok(Some(results))
+    }
+
+    fn place(&self, folder: &Folder, kind: StudyKind, results: &Results) -> Place {
+        describe(folder, kind, results, !self.options.run.no_report)
     }
 
     /// Writes results into a folder, without their page if the user wants none.

@@ -48,17 +48,17 @@ fn the_words_are_one_line_that_begins_with_the_safe_strengths() {
         ("..x", "survives up to 2.000 g; overturns from 3.000 g"),
         (
             ".~~x..x.",
-            "survives up to 1.000 g; uncertain above; certainly overturns from 4.000 g (gaps above: 5.000 to 6.000 g, 8.000 g)",
+            "survives up to 1.000 g; uncertain above; certainly overturns at 4.000 g (gaps above: 5.000 to 6.000 g, 8.000 g)",
         ),
         (
             ".~.~/x~?x",
             "survives up to 1.000 g; uncertain at 2.000 g, 4.000 g; no verdict at 5.000 g; \
-             certainly overturns from 6.000 g (uncertain above: 7.000 g; not known above: 8.000 g)",
+             certainly overturns at 6.000 g (uncertain above: 7.000 g; not known above: 8.000 g)",
         ),
         ("xx", "overturns at 1.000 g already, the smallest tried"),
         (
             "~x",
-            "uncertain at 1.000 g already, the smallest tried; certainly overturns from 2.000 g",
+            "uncertain at 1.000 g already, the smallest tried; certainly overturns at 2.000 g",
         ),
         (
             ".//",

@@ -129,6 +129,14 @@ pub(super) fn circular_arch(masonry: &Masonry) -> Option<&Arch> {
     }
 }
 
+/// Line along which span and rise are given in drawings; `None` if there are none.
+pub(super) fn measured_line(masonry: &Masonry) -> Option<MeasuredAt> {
+    match masonry.shape {
+        MasonryShape::Blocks(_) => None,
+        _ => circular_arch(masonry).map_or(Some(MeasuredAt::Mean), |arch| arch.measured_at),
+    }
+}
+
 /// Lowest and the highest coordinates of the blocks of a row.
 pub(in crate::scenario) fn bounds_m(row: &Row) -> [Vector2<f64>; 2] {
     let corners = row.outlines_m.iter().flatten();
@@ -178,7 +186,7 @@ fn masonry_dimensions(masonry: &Masonry) -> Vec<Dimension> {
     let Some([start, end]) = masonry.springings() else {
         return width_and_height(bounds_m(&masonry.row)).into();
     };
-    let line = circular_arch(masonry).and_then(|arch| arch.measured_at);
+    let line = measured_line(masonry);
     let ends = [start, end].map(|joint| match line {
         Some(MeasuredAt::Intrados) => joint.intrados_m,
         Some(MeasuredAt::Extrados) => joint.extrados_m,

@@ -1,7 +1,7 @@
 //! A structure in words: dimensions, frame of reference and positions of ties.
 
 use super::Structure;
-use super::dimensions::{circular_arch, metres};
+use super::dimensions::{circular_arch, measured_line, metres};
 use crate::mechanics::masonry::FillLevel;
 use crate::mechanics::{MasonryShape, MeasuredAt, PlacedLoad, Tie};
 use crate::{Arch, Column, Masonry};
@@ -19,7 +19,7 @@ impl Structure {
                     "circular arch of {degrees} degrees, {thick} m thick"
                 ));
                 parts.extend(arch.voussoirs.map(|count| format!("{count} voussoirs")));
-                parts.extend(measured_line(arch));
+                parts.extend(arch.measured_at.map(line_in_words));
             }
             Self::Column(column) => parts.extend(column_words(column)),
             Self::Masonry(masonry) => parts.extend(masonry_words(masonry)),
@@ -78,10 +78,9 @@ impl Structure {
     }
 }
 
-/// Line along which span and rise are measured, in words; `None` if the scenario does not give them.
-fn measured_line(arch: &Arch) -> Option<String> {
-    let line = arch.measured_at?;
-    Some(format!("span and rise {}", line.in_words()))
+/// Line along which span and rise are measured, in words.
+fn line_in_words(line: MeasuredAt) -> String {
+    format!("span and rise {}", line.in_words())
 }
 
 fn column_words(column: &Column) -> Vec<String> {
@@ -141,7 +140,7 @@ fn masonry_words(masonry: &Masonry) -> Vec<String> {
         format!(", {} m thick", metres(thick_m))
     });
     let mut parts = vec![format!("{name}{}", thick.unwrap_or_default())];
-    parts.extend(circular_arch(masonry).and_then(measured_line));
+    parts.extend(measured_line(masonry).map(line_in_words));
     parts.push(format!("{} blocks", masonry.row.blocks.len()));
     parts.extend(masonry.fill.map(|fill| {
         let (height_m, line) = match fill.level {

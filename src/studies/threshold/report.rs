@@ -460,9 +460,10 @@ impl Threshold {
                 let over = match self.varied.len() {
                     0 => String::new(),
                     varied => format!(
-                        ", the worst of {} stiffnesses and contacts of joints ({} as given, {best} at best)",
+                        ", the worst of {} stiffnesses and contacts of joints ({} as given, {best} at best) at factors {} % apart",
                         1 + varied,
-                        rounded_down(safe)
+                        rounded_down(safe),
+                        in_percent(self.factors.stride)
                     ),
                 };
                 let [factor, strength_g] = [least, least * peak_g].map(rounded_down);
@@ -661,8 +662,13 @@ pub(super) fn lower_in_words(from: Option<f64>) -> String {
 }
 
 fn sampled_in_words(from: &str, to: &str, stride: f64) -> String {
-    let percent = (1e6 * stride).round() / 1e4;
+    let percent = in_percent(stride);
     format!(
         "sampled from {from} to {to} in strides of {percent} %, and finely below the first edge"
     )
+}
+
+/// A stride in percent, without rounding errors.
+fn in_percent(stride: f64) -> f64 {
+    (1e6 * stride).round() / 1e4
 }

@@ -162,7 +162,7 @@ fn listed(
     of_kind.collect()
 }
 
-/// Line of words: `survives up to 2.113; uncertain above; certainly overturns from 2.401 (gaps above: 2.604 to 2.871)`. The unit
+/// Line of words: `survives up to 2.113; uncertain above; certainly overturns at 2.401 (gaps above: 2.604 to 2.871)`. The unit
 /// of strengths may be empty. For factors, `peak_g` is the peak ground acceleration at factor 1.
 pub fn survival_in_words(survival: &Survival, unit: &str, peak_g: Option<f64>) -> String {
     let both = |strength: String, in_g: String| match peak_g {
@@ -204,10 +204,11 @@ pub fn survival_in_words(survival: &Survival, unit: &str, peak_g: Option<f64>) -
     let known = below.iter().rfind(|range| range.verdict.is_some());
     match (overturns_from, known) {
         (Some(strength), _) if !below.is_empty() => {
-            let from = if survival.at_most {
-                "at or below"
-            } else {
-                "from"
+            let from = match is_certain {
+                _ if survival.at_most => "at or below",
+                true => "from",
+                // Factors beside the uncertain ones may overturn it as well.
+                false => "at",
             };
             parts.push(format!("{certainly}overturns {from} {strength}"));
         }
