@@ -559,7 +559,7 @@ const PARTS = {
     verify(compared().includes("mean_radius_m = 10") && compared().includes("mean_radius_m = 5"), compared());
     await ask(3, "SURVIVES");
     verify(compared().includes("free hinges") && compared().includes("four links"), compared());
-    await ask(4, "SURVIVES");
+    await ask(4, "OVERTURNS");
     verify(compared() === "" && text.value.includes("[piers]"), compared());
     let asked = false;
     element("record").addEventListener("click", (click) => (click.preventDefault(), (asked = true)), { once: true });

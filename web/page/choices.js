@@ -115,7 +115,7 @@ const QUESTIONS = [
   ["Twice as large", "The pulse that fells an arch of 5 m radius does not fell one of 10 m with the same shape. Size helps.", "maps",
     [startWith(["-0.35", "-0.45"]), startWith(["-0.35", "-0.45"], ["5.0", "10.0"])]],
   ["Four hinges or all joints?", "Four fixed hinges are fast to compute, but stone opens at any joint: compare both answers.", "choose", [startWith(["[free_hinges]\n\n", ""]), startWith()]],
-  ["On piers", "An arch rarely stands on the ground. Piers sway with it, and turn about their toes.", "shapes", [exampleWith(-0.35, "Pointed arch on piers")]],
+  ["On piers", "An arch rarely stands on the ground. Piers sway with it, and turn about their toes; a load beside the crown makes one direction the weaker one.", "shapes", [exampleWith(-0.35, "Pointed arch on piers")]],
   ["Your record", "Choose or drop a file of ground accelerations: AT2 of PEER, ASC of ESM, or a table.", "records", null],
 ];
 
