@@ -620,6 +620,9 @@ def test_results_print_their_answer(arch: Arch, pulse: Pulse) -> None:
     assert str(history).splitlines() == [f"History: {repr(history)[10:].split(';')[0]}", *history.to_quote.split("; ")]
     found = archrock.threshold(arch, pulse, stride=0.2)
     answer = "SURVIVES up to "
+    slips = simulate(Arch(3.0, 0.3, 120.0, voussoirs=12), Pulse.half_sine(-1.2, 0.3), model="free")
+    assert "run `archrock" in slips.to_quote
+    assert "compute it with friction_coefficient=0.6" in str(slips) and "`" not in str(slips)
     assert repr(found).startswith(f"<Threshold: {answer}") and f"Threshold:\n  {answer}" in str(found)
     assert pickle.loads(pickle.dumps(found)) == found and repr(pickle.loads(pickle.dumps(found))) == repr(found)
     assert "amplitude_g: peak acceleration" in (Pulse.gabor.__doc__ or "") and "gamma: length" in (Pulse.gabor.__doc__ or "")

@@ -13,7 +13,7 @@ import numpy as np
 from . import _native
 from ._hinge import Hinge
 from ._summary import Part, Summarised, Summary, Untyped
-from ._warnings import warn
+from ._warnings import in_python, warn
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -508,7 +508,7 @@ class History(RunResult, Summarised):
 
     def __str__(self) -> str:
         """The answer that may be quoted and its conditions, a line each."""
-        return "\n".join([f"History: {self._words()}", *self.to_quote.split("; ")])
+        return "\n".join([f"History: {self._words()}", *map(in_python, self.to_quote.split("; "))])
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, History):

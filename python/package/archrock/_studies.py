@@ -21,7 +21,7 @@ from ._samples import Held, Samples
 from ._scenario import Scenario
 from ._structure import Structure
 from ._summary import Summarised, Summary, Untyped
-from ._warnings import warn
+from ._warnings import in_python, warn
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -130,7 +130,7 @@ class Files(Summarised):
 
     def __str__(self) -> str:
         """The answer with its conditions and main numbers, as the program prints it."""
-        return f"{type(self).__name__}:\n  {self._answer}"
+        return f"{type(self).__name__}:\n  {in_python(self._answer)}"
 
 
 class Results(Files):

@@ -10,6 +10,8 @@ from collections.abc import Iterable
 
 _NUMBER = re.compile(r"(?<![\w.-])-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?(?![\w.-]*\w)")
 
+_COMMAND = re.compile(r"run `archrock [^`]* --set free_hinges\.(\w+)=([\d.]+)`")
+
 
 class ArchrockWarning(UserWarning):
     """An input is unlikely, or a result is of limited reliability.
@@ -32,6 +34,15 @@ class ArchrockWarning(UserWarning):
 
     def __format__(self, format_spec: str) -> str:
         return format(self.details, format_spec)
+
+
+def in_python(words: str) -> str:
+    """Words of the program in which keyword arguments take the place of a command."""
+    def arguments(command: re.Match[str]) -> str:
+        model = ', model="free"' if "--hinges free" in command[0] else ""
+        return f"compute it with {command[1]}={command[2]}{model}"
+
+    return _COMMAND.sub(arguments, words)
 
 
 def warn(texts: Iterable[str]) -> None:
