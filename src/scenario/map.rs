@@ -260,8 +260,19 @@ impl Map {
                     let given_s = ends.map(|value| axis.quantity.duration_s(*value, pulse));
                     given_s.flatten().collect::<Vec<_>>()
                 });
+                let mut durations_s: Vec<f64> = durations_s.collect();
+                durations_s.sort_by(f64::total_cmp);
+                for duration_s in &durations_s {
+                    ensure(DURATION_S.contains(*duration_s), || {
+                        let allowed = DURATION_S.allowed();
+                        let duration = plain(*duration_s);
+                        format!(
+                            "[map] has a pulse whose duration is {duration} s; must be {allowed}"
+                        )
+                    })?;
+                }
                 let longest = PulseGround {
-                    duration_s: durations_s.reduce(f64::max).unwrap_or(pulse.duration_s),
+                    duration_s: durations_s.last().copied().unwrap_or(pulse.duration_s),
                     ..pulse.clone()
                 };
                 ("pulses that last", longest.ground_motion(1.0).end_s())

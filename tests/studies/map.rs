@@ -645,6 +645,14 @@ fn errors_of_a_map_name_their_place_and_remedy() {
             &expected,
         );
     }
+    let long = format!(
+        "{ARCH}[ground.one_cosine]\namplitude_g = 0.4\nduration_s = 0.5\n[map]\npgv_over_pga_s = [1e6]\namplitude_g = [1]\n"
+    );
+    let refused = OverturningMap::of(&parsed(&long)).unwrap_err();
+    assert!(
+        refused.contains("duration is 6.28319e6") && refused.contains("to 1e6"),
+        "{refused}"
+    );
     assert_error(
         "pgv_over_pga_s = [1]\n\"ground.gabor.gamma\" = [2]",
         "9:18",

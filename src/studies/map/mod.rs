@@ -319,7 +319,7 @@ impl<'a> OverturningMap<'a> {
                 let amplitude_g = value(Quantity::Amplitude).unwrap_or(pulse.amplitude_g);
                 let amplitude_g = Vector2::new(amplitude_g, pulse.vertical_amplitude_g);
                 let motion = shape.inclined_m_s2(amplitude_g * gravity_m_s2);
-                Some(motion.expect("the amplitudes of a scenario are those of a ground motion"))
+                Some(motion.map_err(|error| error.to_string())?)
             }
             Some(Ground::Record(record)) => {
                 let factor = value(Quantity::Scale).map(Scaling::Factor);
