@@ -375,7 +375,6 @@ fn statics_end_at_the_first_motion_of_limit_analysis() {
         let limit = try_computed("limit", &text, &[], true)?;
         let starts_g = &limit["summary"]["incipient_acceleration_g"];
         let starts_g = [starts_g["right"].as_f64()?, starts_g["left"].as_f64()?];
-        // Four links have other limits where they may open anywhere.
         Some(json!({ "scenario": text, "starts_g": starts_g }))
     });
     let cases = cases.take(12).collect::<Vec<_>>();
