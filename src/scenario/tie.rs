@@ -19,7 +19,7 @@ use crate::mechanics::stability::collapse_mechanism;
 use crate::mechanics::{Anchor, Tie};
 use crate::{Column, Row};
 
-const COORDINATE_M: Number = within(&(-1e6..=1e6));
+pub(super) const COORDINATE_M: Number = within(&(-1e6..=1e6));
 /// Largest stiffness of a tie, in N/m: a steel bar of 30,000 mm2 with a length of 0.6 m. Stiffer ties are practically rigid, and computations
 /// take longer.
 const STIFFEST_N_M: f64 = 1e10;

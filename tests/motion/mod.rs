@@ -3,6 +3,7 @@
 mod back_wall;
 mod back_wall_elastic;
 mod between_impacts;
+mod body;
 mod column;
 mod directions;
 mod elastic_joints;

@@ -51,7 +51,7 @@ const COLUMNS = `unit = "g" # of the accelerations; or "m/s2", "cm/s2"
 # skip_rows = 0
 `;
 /** All kinds of structures: the page offers the first ones. */
-const KINDS = STRUCTURES.map(([name]) => name).concat("basket_arch", "blocks");
+const KINDS = STRUCTURES.map(([name]) => name).concat("basket_arch", "blocks", "body");
 const MODELS = [
   ["", "Four links: hinges where they open first", "", "The fastest model: four hinges that stay where they opened first. A rough guide for arches."],
   ["free_hinges", "Free hinges: any joint may open", "[free_hinges]\n", "Rigid blocks whose joints open and close anywhere. It makes the fewest assumptions: quote this one."],

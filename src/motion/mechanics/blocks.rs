@@ -267,6 +267,13 @@ impl Row {
         self
     }
 
+    /// This row with another mass, centre and inertia of a block.
+    #[must_use]
+    pub(crate) fn with_block(mut self, index: usize, block: Block) -> Self {
+        self.blocks[index] = block;
+        self
+    }
+
     /// This row with a body fixed to a block.
     #[must_use]
     pub fn with_body(mut self, block: usize, body: &Block) -> Self {

@@ -19,7 +19,6 @@
 //! With loads it is a general rigid body, under constant forces; see [`Tilting`].
 
 use std::f64::consts::FRAC_PI_2;
-use std::ops::RangeInclusive;
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -29,6 +28,7 @@ use super::arch::{DENSITY_KG_M3, DEPTH_M};
 use super::back_wall::three_impacts;
 use super::blocks::{GRAVITY_M_S2, MAX_BLOCKS};
 use super::chain::MechanismState;
+use super::given_body::{GivenBody, MAGNITUDE};
 use super::tie::TieError;
 use super::tilting::{Tilting, thrust_section_parts};
 use crate::argument::{ArgumentError, plain, require, require_within};
@@ -38,9 +38,6 @@ use crate::mechanics::{
     BackWall, Block, Demand, FourLinkError, Hinge, ImpactLaw, ImpactModel, Link, MechanismChain,
     NoWallRatio, PlacedLoad, Row, RowError, Sides, Sway, Tie,
 };
-
-/// Range of sizes in metres and of densities in kg/m3; their products stay in the range of an `f64`.
-const MAGNITUDE: RangeInclusive<f64> = 1e-9..=1e12;
 
 /// A free-standing column: a rectangular block on rigid ground, which does not slide.
 ///
@@ -62,6 +59,9 @@ pub struct Column {
     pub density_kg_m3: f64,
     drum_heights_m: Option<Vec<f64>>,
     top_width_m: Option<f64>,
+    /// Numbers of a rigid body in place of those of a prism; `None` for a column. Its height and width are then those of a block for drawings.
+    #[serde(skip)]
+    pub given: Option<GivenBody>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pedestal: bool,
     /// Wall behind the column; `None` if it stands free. [`Column::row`] has no wall.
@@ -106,11 +106,29 @@ impl Column {
             density_kg_m3: DENSITY_KG_M3,
             drum_heights_m: None,
             top_width_m: None,
+            given: None,
             pedestal: false,
             back: None,
             ties: Vec::new(),
             loads: Vec::new(),
             gravity_m_s2: GRAVITY_M_S2,
+        })
+    }
+
+    /// A rigid body by its numbers, which rocks about its toes as a column does. It is drawn as a block on its toes, twice as high as its centre of
+    /// gravity, and 1 m deep.
+    ///
+    /// # Errors
+    /// When a number is outside its range, or the body does not stand.
+    pub fn of_body(body: GivenBody) -> Result<Self, ArgumentError> {
+        body.check()?;
+        let [left, right] = body.toes_x_m;
+        let block = Self::new(2.0 * body.centre_m.y, right - left)?;
+        let density_kg_m3 = body.mass_kg / (block.height_m * block.width_m * block.depth_m);
+        Ok(Self {
+            density_kg_m3,
+            given: Some(body),
+            ..block
         })
     }
 
@@ -245,8 +263,9 @@ impl Column {
     /// Column as one block that sways to this side.
     fn tilting_block(&self, sway: Sway) -> Tilting {
         let size_m = [self.height_m, self.width_m];
+        let (own, given) = (self.own_body(), self.given.is_some());
         let loads = self.placed_loads();
-        Tilting::new(size_m, self.prism_kg(), loads, self.gravity_m_s2, sway)
+        Tilting::new(size_m, (&own, given), loads, self.gravity_m_s2, sway)
     }
 
     /// Whether its weight and its loads do not turn the column over the top of a wall of this height on this side: in a virtual rotation
@@ -266,7 +285,8 @@ impl Column {
     pub fn placed_loads(&self) -> impl Iterator<Item = (&PlacedLoad, Vector2<f64>)> {
         self.loads.iter().map(|load| {
             let height_m = load.height_m.unwrap_or(self.height_m);
-            (load, Vector2::new(load.x_m, height_m))
+            let middle_m = self.given.map_or(0.0, |body| body.middle_m());
+            (load, Vector2::new(load.x_m - middle_m, height_m))
         })
     }
 
@@ -299,24 +319,26 @@ impl Column {
         forces.filter(|(_, force_n)| *force_n != Vector2::zeros())
     }
 
-    /// Mass of a prism of its base, its height and its depth, in kg.
-    fn prism_kg(&self) -> f64 {
-        self.density_kg_m3 * self.depth_m * self.height_m * self.width_m
+    /// Column without loads as one rigid body; its drums and its taper are neglected.
+    fn own_body(&self) -> Block {
+        if let Some(given) = self.given {
+            return given.block();
+        }
+        let mass_kg = self.density_kg_m3 * self.depth_m * self.height_m * self.width_m;
+        let diagonal_m = libm::hypot(self.height_m, self.width_m);
+        Block {
+            mass_kg,
+            centre_m: Vector2::new(0.0, 0.5 * self.height_m),
+            inertia_kg_m2: mass_kg * diagonal_m * diagonal_m / 12.0,
+        }
     }
 
     /// Column and its moving loads as one rigid body; its drums and its taper are neglected.
     pub fn body(&self) -> Block {
-        let mass_kg = self.prism_kg();
-        let diagonal_m = libm::hypot(self.height_m, self.width_m);
-        let own = Block {
-            mass_kg,
-            centre_m: Vector2::new(0.0, 0.5 * self.height_m),
-            inertia_kg_m2: mass_kg * diagonal_m * diagonal_m / 12.0,
-        };
         let loads = self
             .placed_loads()
             .filter_map(|(load, at_m)| load.moving_body(at_m));
-        loads.fold(own, |body, load| body.with(&load))
+        loads.fold(self.own_body(), |body, load| body.with(&load))
     }
 
     /// Wall behind the column with its height in metres; `None` without a wall, or if its height is zero.
@@ -419,6 +441,10 @@ impl Column {
             self.depth_m,
             self.density_kg_m3,
         )?;
+        let row = match self.given {
+            Some(given) => row.with_block(0, given.block()),
+            None => row,
+        };
         let loads = self
             .placed_loads()
             .filter_map(|(load, at_m)| Some((at_m, load.moving_body(at_m)?)));
@@ -474,9 +500,10 @@ impl Column {
         Ok(self)
     }
 
-    /// Sections at which the thrust line of a single block is reported, in metres above the base: 21, from the base to the top.
+    /// Sections at which the thrust line of a single block is reported, in metres above the base: 21, from the base to the top; of a body by its
+    /// numbers the base alone.
     pub fn thrust_sections_m(&self) -> Vec<f64> {
-        let parts = thrust_section_parts();
+        let parts = thrust_section_parts(self.given.is_some());
         parts.map(|part| part * self.height_m).collect()
     }
 

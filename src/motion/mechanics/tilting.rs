@@ -18,7 +18,7 @@ use super::chain::{Coefficients, MechanismState};
 use super::geometry::pose::{product, unit};
 use super::geometry::rigid::mirrored;
 use crate::mechanics::four_link::thrust::PartLoad;
-use crate::mechanics::{MassMoments, Mechanism, Momentum, PlacedLoad, Pose, Sway};
+use crate::mechanics::{Block, MassMoments, Mechanism, Momentum, PlacedLoad, Pose, Sway};
 
 /// Load of a block, in the frame in which it sways right.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +39,8 @@ pub struct Tilting {
     cos: f64,
     /// Mass of the block.
     block: f64,
+    /// Moments of the block about the middle of the base, in its masses; `None` for a prism.
+    given: Option<MassMoments>,
     /// Moments of block and moving loads about the middle of the base, in masses of the block.
     body: MassMoments,
     /// Vector from the common centre of gravity to the toe, turned upwards: distance of the toe to its right, and height of the centre.
@@ -53,11 +55,11 @@ pub struct Tilting {
 }
 
 impl Tilting {
-    /// Prismatic block, given by height and width in metres and by its mass, with loads at points in metres from the middle of its base. It
-    /// sways to this side.
+    /// Block of this height and width in metres, with loads at points in metres from the middle of its base. It is a prism, or a body with the given
+    /// moments. It sways to this side.
     pub(super) fn new<'l>(
         [height_m, width_m]: [f64; 2],
-        block_kg: f64,
+        (own, is_given): (&Block, bool),
         loads: impl Iterator<Item = (&'l PlacedLoad, Vector2<f64>)>,
         gravity_m_s2: f64,
         sway: Sway,
@@ -68,8 +70,9 @@ impl Tilting {
             Sway::Right => v,
             Sway::Left => mirrored(v),
         };
+        let (block_kg, half_m) = (own.mass_kg, 0.5 * diagonal_m);
         let loads = loads.map(|(load, at_m)| CarriedLoad {
-            at: towards(at_m) / (0.5 * diagonal_m),
+            at: towards(at_m) / half_m,
             mass: load.moving_mass_kg() / block_kg,
             force: towards(load.constant_force_n(gravity_m_s2)) / (block_kg * gravity_m_s2),
         });
@@ -77,11 +80,20 @@ impl Tilting {
         let loads: Vec<CarriedLoad> = loads
             .filter(|load| load.mass > 0.0 || load.force != Vector2::zeros())
             .collect();
+        let toe = Vector2::new(sin, 0.0);
         // Housner's block has an inertia of 1/3 about its centre, and of 4/3 about its toe.
         let mut body = MassMoments::of_body(1.0, Vector2::new(0.0, cos), 1.0 / 3.0);
         let mut inertia = 4.0 / 3.0;
+        let given = is_given.then(|| {
+            let (centre, central) = (
+                towards(own.centre_m) / half_m,
+                own.inertia_kg_m2 / (block_kg * half_m * half_m),
+            );
+            inertia = central + (centre - toe).norm_squared();
+            body = MassMoments::of_body(1.0, centre, central);
+            body
+        });
         let (mut moment, mut virial) = (0.0, 0.0);
-        let toe = Vector2::new(sin, 0.0);
         for load in &loads {
             let from_toe = load.at - toe;
             body = body + load.moments();
@@ -94,6 +106,7 @@ impl Tilting {
             sin,
             cos,
             block: 4.0 * sin * cos,
+            given,
             body,
             arm: Vector2::new(sin - centre.x, centre.y),
             inertia,
@@ -120,7 +133,7 @@ impl Tilting {
 
     /// Rotation at the unstable equilibrium, at most a right angle. `slenderness_rad` is that of the column without loads.
     pub(super) fn critical_rad(&self, slenderness_rad: f64) -> f64 {
-        if self.loads.is_empty() {
+        if self.loads.is_empty() && self.given.is_none() {
             return slenderness_rad;
         }
         let mass = self.body.mass;
@@ -247,7 +260,8 @@ impl Tilting {
             // Without loads the mass of the part cancels.
             let mass = loads().next().map_or(1.0, |_| 1.0 - part);
             let central = (width * width + above * above) / 12.0;
-            let own = MassMoments::of_body(1.0, centre, central);
+            let prism = MassMoments::of_body(1.0, centre, central);
+            let own = self.given.unwrap_or(prism);
             let moments = loads().fold(own * mass, |sum, load| sum + load.moments());
             let resultant = loads().fold(load.resultant(&moments), |sum, load| {
                 sum + Momentum::applied_at(load.at, force(load.force))
@@ -256,7 +270,8 @@ impl Tilting {
             let eccentricity_ratio = -resultant.moment_about(section) / (normal * width);
             (normal > 0.0).then_some(eccentricity_ratio)
         };
-        thrust_section_parts().map(crossing).collect()
+        let parts = thrust_section_parts(self.given.is_some());
+        parts.map(crossing).collect()
     }
 }
 
@@ -267,9 +282,11 @@ impl CarriedLoad {
     }
 }
 
-/// Sections at which the thrust line is reported, as fractions of the height.
-pub(super) fn thrust_section_parts() -> impl Iterator<Item = f64> {
-    (0..=20_u8).map(|section| f64::from(section) / 20.0)
+/// Sections at which the thrust line is reported, as fractions of the height. The masses above other sections than the base are unknown for a body by its
+/// numbers.
+pub(super) fn thrust_section_parts(is_given: bool) -> impl Iterator<Item = f64> {
+    let last = if is_given { 0 } else { 20_u8 };
+    (0..=last).map(|section| f64::from(section) / 20.0)
 }
 
 impl Mechanism for Tilting {

@@ -20,7 +20,7 @@ use super::tie::{self, TieTable};
 use crate::argument::rounded_up;
 use crate::mechanics::four_link::least_thickness_ratio;
 use crate::mechanics::masonry::{CircularArch, LoadOutlines};
-use crate::mechanics::{DENSITY_KG_M3, DEPTH_M, MAX_BLOCKS};
+use crate::mechanics::{DENSITY_KG_M3, DEPTH_M, GivenBody, MAX_BLOCKS};
 use crate::mechanics::{LimitError, MasonryShape, Parts, PlacedLoad, RowError, Supports, Tie};
 use crate::{
     Arch, BackWall, Column, FourLinkError, FourLinks, FreeHinges, ImpactLaw, ImpactModel, Masonry,
@@ -28,17 +28,33 @@ use crate::{
 };
 
 /// The structure that stands on the ground.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Structure {
     /// A circular arch, from `[arch]`.
     Arch(Arch),
-    /// A free-standing column, from `[column]`.
+    /// A free-standing column, from `[column]`, or a body by its numbers, from `[body]`.
     Column(Column),
     /// An arch of another shape, on piers or with loads, or given blocks: a row of blocks.
-    #[serde(untagged)]
     Masonry(Box<Masonry>),
 }
+
+impl Serialize for Structure {
+    /// Writes the tables of the structure.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let table = match self {
+            Self::Masonry(masonry) => return masonry.serialize(serializer),
+            Self::Arch(arch) => ("arch", json!(arch)),
+            Self::Column(column) => match &column.given {
+                Some(body) => (BODY, json!(body)),
+                None => ("column", json!(column)),
+            },
+        };
+        serializer.collect_map([table])
+    }
+}
+
+/// Table of a rigid body by its numbers.
+const BODY: &str = "body";
 
 /// Reasons why a structure has no model of motion.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -68,10 +84,13 @@ impl Structure {
             read_arch(table, has_joints, alone, unproved)
         });
         let column = table.table("column", |table| read_column(table, has_joints));
+        let body = table.table(BODY, read_body);
         let shape = masonry::read_shapes(table).map(StructureTable::Shape);
         let [pointed, elliptic, basket, blocks] = masonry::SHAPES;
-        let tables = ["arch", "column", pointed, elliptic, basket, blocks];
+        let tables = ["arch", "column", BODY, pointed, elliptic, basket, blocks];
         table.apply_relations(&[OneOf(&tables, None)])?;
+        let body = body.map(|body| (body, None));
+        let column = column.or(body);
         let column = column.map(|(column, back)| StructureTable::Column(column, back));
         let read = arch.or(column).or(shape).ok_or(FaultRecorded)?;
         let (beside, gravity_m_s2) = (beside?, gravity_m_s2.ok_or(FaultRecorded)?);
@@ -88,6 +107,12 @@ impl Structure {
                 table.refuse(is_pushed, "tie", NO_CONSTANT_FORCES)?;
                 let is_held = column.wall().is_some() && !ties.is_empty();
                 table.refuse(is_held, "tie", NO_TIES)?;
+                let is_tied = column.given.is_some() && !ties.is_empty();
+                table.refuse(
+                    is_tied,
+                    "tie",
+                    "goes with an arch or a [column], not with a [body] by its numbers",
+                )?;
                 Self::Column(tie::tied_column(table, &ties, column, gravity_m_s2)?)
             }
             StructureTable::Column(..) => {
@@ -191,7 +216,7 @@ impl Structure {
     pub fn is_symmetric(&self) -> bool {
         match self {
             Self::Arch(_) => true,
-            Self::Column(column) => column.loads.is_empty(),
+            Self::Column(column) => column.loads.is_empty() && column.given.is_none(),
             Self::Masonry(_) => false,
         }
     }
@@ -363,6 +388,34 @@ fn why_not(arch: &Arch, error: LimitError) -> String {
             )
         }
     }
+}
+
+/// Reads `[body]`.
+fn read_body(table: &mut Table<'_>) -> ReadResult<Column> {
+    let mass_kg = table.read_required("mass_kg", &MAGNITUDE);
+    let inertia_kg_m2 = table.read_required("inertia_kg_m2", &MAGNITUDE);
+    let centre_m = table.read_required("centre_m", &list_of(&tie::COORDINATE_M));
+    let toes_x_m = table.read_required("toes_x_m", &list_of(&tie::COORDINATE_M));
+    table.check_faultless()?;
+    let mut pair = |key, numbers: Vec<f64>| {
+        let count = numbers.len();
+        let pair = <[f64; 2]>::try_from(numbers);
+        table.accept(
+            key,
+            pair.map_err(|_| format!("has {count} numbers; must have two")),
+        )
+    };
+    let (centre_m, toes_x_m) = (pair("centre_m", centre_m)?, pair("toes_x_m", toes_x_m)?);
+    let body = GivenBody {
+        mass_kg,
+        inertia_kg_m2,
+        centre_m: centre_m.into(),
+        toes_x_m,
+    };
+    Column::of_body(body).map_err(|error| {
+        let wrong = format!("gives {}; must be {}", plain(error.value), error.allowed);
+        table.reject(error.argument, wrong)
+    })
 }
 
 /// Message about ties of a column with a wall behind it.

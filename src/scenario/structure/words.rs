@@ -88,7 +88,16 @@ fn column_words(column: &Column) -> Vec<String> {
         let (side, height) = (wall.side.name(), metres(height_m));
         format!(" against a wall of {height} m on its {side}")
     });
-    let mut parts = vec![format!("column{}", wall.unwrap_or_default())];
+    let mut parts = match column.given {
+        Some(body) => {
+            let [mass, inertia] = [body.mass_kg, body.inertia_kg_m2].map(metres);
+            let [x, y] = [column.body().centre_m.x, body.centre_m.y].map(metres);
+            vec![format!(
+                "body of {mass} kg and {inertia} kg m2, centre at ({x}, {y}) m; drawn as a block"
+            )]
+        }
+        None => vec![format!("column{}", wall.unwrap_or_default())],
+    };
     parts.extend(column.placed_loads().map(|(load, at_m)| {
         let [x, y] = [at_m.x, at_m.y].map(metres);
         let load = load_in_words(load);

@@ -7,7 +7,10 @@ use crate::scenario::Scenario;
 impl Scenario {
     /// Mistakes that only several numbers together show.
     pub(super) fn unlikely_together(&self, numbers: &Numbers) -> Vec<Unlikely> {
-        let column = self.structure.column();
+        let column = self
+            .structure
+            .column()
+            .filter(|column| column.given.is_none());
         let alone = column.into_iter().flat_map(|column| {
             [
                 width_exchanged(column),
