@@ -52,7 +52,10 @@ def program() -> Program:
 
     def run(*arguments: object) -> subprocess.CompletedProcess[str]:
         command = [named, *map(str, arguments)]
-        return subprocess.run(command, capture_output=True, text=True, check=False)
+        ran = subprocess.run(command, capture_output=True, text=True, check=False)
+        # Long messages continue on indented lines.
+        ran.stderr = ran.stderr.replace("\n  ", " ")
+        return ran
 
     return run
 

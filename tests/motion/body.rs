@@ -72,7 +72,8 @@ fn a_body_with_the_numbers_of_a_column_moves_as_it_does() {
         }
     }
     // A release, and free hinges, whose steps are the same.
-    let initial = "[initial]\nsway = \"right\"\nrotation_rad = 0.1\n[simulation]\nduration_s = 3.0\n";
+    let initial =
+        "[initial]\nsway = \"right\"\nrotation_rad = 0.1\n[simulation]\nduration_s = 3.0\n";
     for more in [initial.to_owned(), format!("[free_hinges]\n{ground}")] {
         let [one, other] =
             [PRISM.to_owned(), numbers_of_prism()].map(|text| results(&format!("{text}{more}")));

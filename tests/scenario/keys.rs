@@ -58,7 +58,7 @@ fn add(tables: &mut Vec<Described>, path: &str, schema: &Value) {
 }
 
 /// The order of the reference.
-const ORDER: [&str; 23] = [
+const ORDER: [&str; 24] = [
     "",
     "arch",
     "pointed_arch",
@@ -66,6 +66,7 @@ const ORDER: [&str; 23] = [
     "basket_arch",
     "blocks",
     "column",
+    "body",
     "piers",
     "fill",
     "load",

@@ -128,7 +128,8 @@ impl Geometry {
                     .clone()
                     .with_loads(Vec::new(), scenario.gravity_m_s2());
                 let bare = bare.ok().and_then(|bare| bare.row().ok());
-                geometry.shape = "column".to_owned();
+                let shape = column.given.map_or("column", |_| "body");
+                geometry.shape = shape.to_owned();
                 let rows = [row.as_ref(), bare.as_ref(), bare.as_ref()];
                 geometry.blocks = blocks(rows, |_| density_kg_m3);
                 geometry.loads = loads(&column.loads, &column.load_outlines().loads_m);
