@@ -132,7 +132,11 @@ impl Own {
     }
 
     /// Goes on to the next impact; `None` if it turns by a right angle before, or rests for ten seconds.
-    fn to_impact(&mut self, ends_s: &[f64], ground: &dyn Fn(f64) -> f64) -> Option<(f64, f64)> {
+    fn move_to_impact(
+        &mut self,
+        ends_s: &[f64],
+        ground: &dyn Fn(f64) -> f64,
+    ) -> Option<(f64, f64)> {
         let until_s = self.time_s + 10.0;
         while self.time_s < until_s {
             // Steps end at the corners of the ground motion.
@@ -233,7 +237,7 @@ fn forty_random_bodies_move_as_an_own_integrator_computes() {
         let history = model.history(&motion, &request).unwrap();
         let mut found = history.impacts();
         for _ in 0..4 {
-            let Some((time_s, ratio)) = own.to_impact(&[lasts_s], &ground) else {
+            let Some((time_s, ratio)) = own.move_to_impact(&[lasts_s], &ground) else {
                 if own.q_rad > 0.5 * PI {
                     assert_eq!(
                         history.summary.outcome,
