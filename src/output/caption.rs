@@ -85,20 +85,22 @@ fn structure(structure: &Structure, varies: Varies<'_>) -> String {
             }
             format!("arch: {}", values.join(", "))
         }
-        Structure::Column(column) if let Some(body) = column.given => {
-            let values = [
-                ("mass_kg", "", body.mass_kg, " kg"),
-                ("inertia_kg_m2", "", body.inertia_kg_m2, " kg m2"),
-            ];
-            format!("body: {}", shape("body", &values).join(", "))
-        }
-        Structure::Column(column) => {
-            let values = [
-                ("height_m", "", column.height_m, " m high"),
-                ("width_m", "", column.width_m, " m wide"),
-            ];
-            format!("column: {}", shape("column", &values).join(", "))
-        }
+        Structure::Column(column) => match column.given {
+            Some(body) => {
+                let values = [
+                    ("mass_kg", "", body.mass_kg, " kg"),
+                    ("inertia_kg_m2", "", body.inertia_kg_m2, " kg m2"),
+                ];
+                format!("body: {}", shape("body", &values).join(", "))
+            }
+            None => {
+                let values = [
+                    ("height_m", "", column.height_m, " m high"),
+                    ("width_m", "", column.width_m, " m wide"),
+                ];
+                format!("column: {}", shape("column", &values).join(", "))
+            }
+        },
         Structure::Masonry(_) => "blocks".to_owned(),
     }
 }

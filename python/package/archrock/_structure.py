@@ -34,7 +34,7 @@ class Structure(Described):
     ... )
 
     Args:
-        tables: tables such as ``arch``, ``column``, ``pointed_arch``, ``elliptic_arch``, ``basket_arch``, ``blocks``,
+        tables: tables such as ``arch``, ``column``, ``body``, ``pointed_arch``, ``elliptic_arch``, ``basket_arch``, ``blocks``,
             ``piers``, ``fill``, ``load`` and ``tie`` (lists), with their keys; ``blocks`` may name files, which are read now.
 
     Raises:
