@@ -123,6 +123,10 @@ fn cases() -> Vec<Case> {
             vec![("ground.right.record.vertical.scale", 0.7)],
         ),
         (
+            format!("[body]\nmass_kg = 1200.0\ninertia_kg_m2 = 500.0\ncentre_m = [0.05, 1.2]\ntoes_x_m = [-0.25, 0.25]\n{sine}"),
+            vec![("body.inertia_kg_m2", 600.0)],
+        ),
+        (
             "[column]\nheight_m = 4.0\nwidth_m = 1.0\n[initial]\nsway = 'left'\nimpulse_n_s = 2000.0\nheight_m = 2.0\n".to_owned(),
             vec![("initial.impulse_n_s", 2500.0), ("initial.height_m", 2.5)],
         ),
@@ -145,7 +149,8 @@ fn all_ways_to_change_a_number_compute_one_history() {
     let (mut tables, mut verdicts) = (BTreeSet::new(), 0);
     for (structure, keys) in cases() {
         for (key, value) in keys {
-            let is_block = structure.starts_with(COLUMN) && !structure.contains("drums");
+            let is_one = structure.starts_with(COLUMN) || structure.starts_with("[body]");
+            let is_block = is_one && !structure.contains("drums");
             let duration_s = if is_block { 20.0 } else { 0.8 };
             let text = format!(
                 "{structure}[simulation]\nduration_s = {duration_s:?}\ndirection = 'as_given'\n"
