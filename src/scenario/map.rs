@@ -50,6 +50,11 @@ named! {
 }
 
 impl Quantity {
+    /// True for quantities that give the duration of a pulse.
+    pub(crate) const fn gives_duration(self) -> bool {
+        matches!(self, Self::Duration | Self::Frequency | Self::VelocityRatio)
+    }
+
     /// Duration that a value of this quantity gives a pulse, in s; `None` for other quantities.
     pub(crate) fn duration_s(self, value: f64, pulse: &PulseGround) -> Option<f64> {
         match self {
@@ -205,13 +210,7 @@ impl Map {
                 keys.join(", ")
             )));
         };
-        let gives_duration = |axis: &Axis| {
-            matches!(
-                axis.quantity,
-                Quantity::Duration | Quantity::Frequency | Quantity::VelocityRatio
-            )
-        };
-        if gives_duration(&x) && gives_duration(&y) {
+        if x.quantity.gives_duration() && y.quantity.gives_duration() {
             let wrong = format!(
                 "cannot be combined with `{}`: both give the duration of the pulse",
                 x.key
@@ -237,14 +236,16 @@ impl Map {
     ) -> Result<(), String> {
         let missing = "[map] needs a ground motion: give a table [ground.<kind>], such as [ground.rectangular], or [ground.record]";
         let ground = ground.ok_or(missing)?;
-        use Quantity::{Amplitude, Duration, Frequency, PeakG, Scale, VelocityRatio};
+        use Quantity::{Amplitude, PeakG, Scale};
         let axes = [&self.x, &self.y];
         for axis in axes {
             let wrong = match (axis.quantity, ground) {
                 (Scale | PeakG, Ground::Pulse(_)) => {
                     "goes with a record, and [ground] has a pulse: the axis of its strength is `amplitude_g`"
                 }
-                (Duration | Frequency | VelocityRatio | Amplitude, Ground::Record(_)) => {
+                (quantity, Ground::Record(_))
+                    if quantity.gives_duration() || quantity == Amplitude =>
+                {
                     "goes with a pulse, and [ground] has a record: the axes of its strength are `scale` and `peak_g`"
                 }
                 _ => continue,

@@ -193,7 +193,7 @@ impl Statement {
 
 /// Returns the thoughts of some words that `said` does not contain. Friction is a need among the limits, and a condition in an answer.
 fn new_thoughts<'w>(words: &'w str, said: &str) -> impl Iterator<Item = &'w str> {
-    // A number that goes on is another number.
+    // 0.5 is not said where 0.51 stands.
     let ends = |after: &str| !after.starts_with(|c: char| c.is_ascii_digit());
     let is_said = move |thought: &str| {
         let thought = thought.strip_prefix("needs ").unwrap_or(thought);

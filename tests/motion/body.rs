@@ -131,7 +131,8 @@ impl Own {
         [0, 1].map(|i| state[i] + step_s / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]))
     }
 
-    /// Goes on to the next impact; `None` if it turns by a right angle before, or rests for ten seconds.
+    /// Integrates up to the next impact. Returns its time and its ratio of energies; `None` if the body falls on its side, or has no impact within ten
+    /// seconds.
     fn move_to_impact(
         &mut self,
         ends_s: &[f64],
@@ -263,6 +264,10 @@ fn forty_random_bodies_move_as_an_own_integrator_computes() {
                 "{body:?}: {ratio} {}",
                 impact.restitution
             );
+            // The ratio of energies is equal to both sides.
+            let inertias = own.inertia_kg_m2(1.0) * own.inertia_kg_m2(-1.0);
+            let passed = body.inertia_kg_m2 + mass_kg * own.arm_m(1.0).dot(&own.arm_m(-1.0));
+            assert!((impact.restitution - passed * passed / inertias).abs() < 1e-12);
             impacts += 1;
             // A body that is flat for its new toe stops.
             if own.rate_rad_s <= 0.0 {
@@ -307,7 +312,11 @@ fn a_body_that_does_not_stand_is_refused() {
             "",
             "s.toml:4:12: `centre_m = [3.5, 2.0]` gives 3.5; must be between the toes",
         ),
-        (("[3.0, 2.0]", "[3.0]"), "", "has 1 numbers; must have two"),
+        (
+            ("[3.0, 2.0]", "[3.0]"),
+            "",
+            "must be two numbers, x and y or left and right, not 1",
+        ),
         (("[2.6, 3.4]", "[3.4, 2.6]"), "", "toes_x_m"),
         (("mass_kg = 6400", "mass_kg = 0"), "", "mass_kg"),
         (

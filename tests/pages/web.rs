@@ -66,7 +66,7 @@ fn computed(study: &str, text: &str, files: &[(&str, String)], no_repeat: bool) 
     try_computed(study, text, files, no_repeat).unwrap()
 }
 
-/// The same; `None` if the scenario is refused.
+/// The files of a study as this build of the library computes them; `None` if the library refuses the scenario.
 fn try_computed(
     study: &str,
     text: &str,
@@ -327,7 +327,7 @@ fn rows_of_blocks(cases: &[Value]) -> usize {
     cases.iter().filter(is_row).count()
 }
 
-/// So for forty random scenarios, of all shapes, pulses and models.
+/// The page computes forty random scenarios of all shapes, pulses and models as the program does.
 #[test]
 fn the_page_computes_the_bits_of_the_program_for_forty_random_scenarios() {
     if pages().is_none() {

@@ -402,7 +402,9 @@ fn read_body(table: &mut Table<'_>) -> ReadResult<Column> {
         let pair = <[f64; 2]>::try_from(numbers);
         table.accept(
             key,
-            pair.map_err(|_| format!("has {count} numbers; must have two")),
+            pair.map_err(|_| {
+                format!("must be two numbers, x and y or left and right, not {count}")
+            }),
         )
     };
     let (centre_m, toes_x_m) = (pair("centre_m", centre_m)?, pair("toes_x_m", toes_x_m)?);

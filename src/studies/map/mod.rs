@@ -122,7 +122,7 @@ impl Changes {
     fn of(quantity: Quantity, path: &str) -> Self {
         match quantity {
             Quantity::Amplitude | Quantity::Scale | Quantity::PeakG => Self::Strength,
-            Quantity::Duration | Quantity::Frequency | Quantity::VelocityRatio => Self::Duration,
+            quantity if quantity.gives_duration() => Self::Duration,
             _ if path.starts_with("ground.") => Self::Ground,
             _ => Self::Model,
         }

@@ -391,8 +391,8 @@ impl Heading {
         found.with_page("suite.html", page, &cases, (&draw, more))
     }
 
-    /// Answer that may be quoted: the largest intensity that is safe under all records, or the number of unscaled records that overturn the structure. Also returns the largest friction demand of the
-    /// surviving cases up to it.
+    /// Answer that may be quoted: the largest intensity that is safe under all records, or the number of unscaled records that overturn the structure.
+    /// Also returns the largest friction demand of the surviving cases up to it.
     fn answer(
         &self,
         results: &SuiteFragility,

@@ -173,7 +173,7 @@ impl<'a> MotionObserver<'a> {
             }
         }
         let least_n = &mut self.row_summary.least_normal_n;
-        // Machines differ in the smaller one of the two zeros: the sum is the positive one.
+        // Which of 0 and -0 is the smaller one depends on the machine. Adding zero gives 0.
         *least_n = least_n.min(least / lasts_s) + 0.0;
         self.note_friction(friction, lasts_s);
         friction
