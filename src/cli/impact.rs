@@ -55,6 +55,8 @@ impl Arguments {
 pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
     let scenario = input.without_moved_springings(input.read(None)?)?;
+    let fits = scenario.check_without_live_loads();
+    fits.map_err(|message| input.input_error(message))?;
     warn(&scenario.unlikely_values());
     let (first, count) = (arguments.first.sway, usize::from(arguments.count));
     if !scenario.structure.has_horizontal_thrust() && !arguments.of_arches_only() {

@@ -33,6 +33,8 @@ pub(crate) const HINGE: Stroke = Stroke::new(color::VERMILION, 1.6, "");
 /// Stroke of hinges of a second mechanism, that to the left.
 const HINGE_TO_THE_LEFT: Stroke = Stroke::new("#6a3d9a", 1.6, "");
 pub(crate) const HINGE_PX: f64 = 3.2;
+/// Stroke of a thrust line.
+const THRUST: Stroke = Stroke::new(color::BLUE, 1.6, "");
 const LOAD: Stroke = Stroke::new("#7a3b00", 1.6, "");
 /// Stroke of the axes of the frame of reference.
 const AXIS: Stroke = Stroke::new(color::BLACK, 1.0, "");
@@ -81,16 +83,18 @@ impl SheetTransform {
 /// Draws a structure at rest with its dimensions, the numbers of its joints, the axes, the positive ground acceleration, and a text below. On moved
 /// supports it is drawn displaced; dashed lines then show the undeformed structure, to which the dimensions refer.
 pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
-    draw_hinges(figure, title, (scene, text), &[], &[])
+    draw_hinges(figure, title, (scene, text), &[], &[], &[])
 }
 
-/// Draws a structure as [`draw`], with the hinges of its mechanisms, each with its sway and its position in metres, and with marks on them.
+/// Draws a structure as [`draw`], with the hinges of its mechanisms, each with its sway and its position in metres, with marks on them, and with a
+/// thrust line by its points in metres.
 pub(crate) fn draw_hinges(
     figure: Figure,
     title: &str,
     (scene, text): (&Scene, &str),
     hinges_m: &[(Sway, Vector2<f64>)],
     spots: &[Spot],
+    thrust_line_m: &[Option<[f64; 2]>],
 ) -> String {
     let room = |side: DimensionSide| room_px(scene, side).max(24.0);
     let [low_m, high_m] = scene.frame_m();
@@ -118,6 +122,11 @@ pub(crate) fn draw_hinges(
         view.draw_ties(drawing);
         view.draw_loads(drawing, Some(part.top), true);
         view.draw_hinges(drawing);
+        let none = [f64::NAN; 2];
+        let thrust_line = thrust_line_m
+            .iter()
+            .map(|at_m| place.px(at_m.unwrap_or(none).into()));
+        drawing.curve("thrust line", thrust_line, THRUST);
         joint_numbers(drawing, &view.place, scene);
         draw_axes(drawing, &view.place, scene);
         for (index, (sway, at_m)) in hinges_m.iter().enumerate() {

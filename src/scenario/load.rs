@@ -29,9 +29,17 @@ impl LoadTable {
             pier: table.optional("pier", &one_of(Sway::ALL)),
             height_m: table.optional("height_m", &within(&(0.0..=1e12))),
             moves: table.or("moves", &switch(), true),
+            live: table.or("live", &switch(), false),
             thrust_n: table.or("thrust_n", &thrust, 0.0),
         };
         table.apply_relations(&[SomeOf(&["mass_kg", "thrust_n"], None)])?;
+        let others = ["moves", "thrust_n", "pier", "height_m"];
+        let other = others.into_iter().find(|key| table.has_key(key));
+        if let Some(other) = other.filter(|_| load.live) {
+            let wrong =
+                "has no effect on a live load, a weight on the extrados of an arch: leave it out";
+            return Err(table.reject(other, wrong));
+        }
         Ok(Self {
             load,
             has_position: x_m.is_some(),
@@ -60,6 +68,8 @@ impl LoadTable {
         let wrong = "applies to arches: a load on a column acts at a point; leave it out";
         ensure(self.load.width_m == 0.0, || ("width_m", wrong))?;
         ensure(self.load.pier.is_none(), || ("pier", wrong))?;
+        let wrong = "applies to arches: a column carries `mass_kg`, with `moves = false` as a weight; leave it out";
+        ensure(!self.load.live, || ("live", wrong))?;
         Ok(self.load)
     }
 }

@@ -1,5 +1,5 @@
 //! Arches of other shapes, blocks from files, and additions to any arch: `[pointed_arch]`, `[elliptic_arch]`,
-//! `[basket_arch]`, `[blocks]`; `[piers]`, `[fill]`, `[[load]]`.
+//! `[basket_arch]`, `[blocks]`; `[piers]`, `[fill]`, `[[load]]`, `[vehicle]`.
 //!
 //! ```toml
 //! [blocks]
@@ -22,7 +22,7 @@ use crate::Masonry;
 use crate::argument::ArgumentError;
 use crate::mechanics::masonry::{
     BasketArch, Dimensions, Fill, FillLevel, GivenBlocks, MasonryError, Material, Pier, Piers,
-    Remedy,
+    Remedy, Spread, Vehicle,
 };
 use crate::mechanics::stability::collapse_mechanism;
 use crate::mechanics::{DENSITY_KG_M3, DEPTH_M, MAX_BLOCKS};
@@ -214,6 +214,7 @@ type Outlines = Vec<(usize, Vec<Vector2<f64>>)>;
 pub(super) struct Additions {
     piers: Piers,
     fill: Option<Fill>,
+    vehicle: Option<Vehicle>,
     pub loads: Vec<LoadTable>,
     pub ties: Vec<TieTable>,
 }
@@ -224,6 +225,7 @@ impl Additions {
         let read = Self {
             piers: table.table("piers", read_piers).unwrap_or_default(),
             fill: table.table("fill", read_fill),
+            vehicle: table.table("vehicle", read_vehicle),
             loads: table.tables("load", LoadTable::read),
             ties: TieTable::read_all(table),
         };
@@ -235,7 +237,7 @@ impl Additions {
     }
 
     pub fn fits_column(&self) -> bool {
-        self.piers.are_none() && self.fill.is_none()
+        self.piers.are_none() && self.fill.is_none() && self.vehicle.is_none()
     }
 
     /// Records that the additions do not fit a structure of this kind.
@@ -243,6 +245,9 @@ impl Additions {
         let key = match self {
             _ if !self.piers.are_none() => "piers",
             Self { fill: Some(_), .. } => "fill",
+            Self {
+                vehicle: Some(_), ..
+            } => "vehicle",
             _ => "load",
         };
         table.reject(key, wrong)
@@ -257,7 +262,18 @@ impl Additions {
     ) -> ReadResult<Masonry> {
         let key = shape.name();
         let loads = load::place_loads_on_arch(table, &self.loads)?;
+        let is_loaded = loads.iter().any(|load| load.live);
+        table.refuse(
+            is_loaded && self.vehicle.is_some(),
+            "vehicle",
+            "cannot be combined with a live load: both would grow; leave one out",
+        )?;
+        let vehicle = self.vehicle.clone();
         let masonry = Masonry::new(shape, self.piers, self.fill, loads)
+            .and_then(|masonry| match vehicle {
+                Some(vehicle) => masonry.with_vehicle(vehicle),
+                None => Ok(masonry),
+            })
             .map_err(|error| self.reject_for(table, key, &error))?;
         let on = (&masonry.row, masonry.springing_joints());
         let ties = tie::place_ties(table, &self.ties, on)?;
@@ -302,6 +318,13 @@ impl Additions {
                 table.reject_in(&["piers", side], error.argument, wrong)
             }
             MasonryError::Fill(error) => table.reject_in(&["fill"], error.argument, allowed(error)),
+            MasonryError::Vehicle(error) => {
+                table.reject_in(&["vehicle"], error.argument, allowed(error))
+            }
+            MasonryError::NoFill => {
+                let wrong = "spreads the axles through fill: give [fill], or spread = \"none\"";
+                table.reject_in(&["vehicle"], "spread", wrong)
+            }
             MasonryError::Load(index, error) => {
                 table.reject_in_element(("load", *index), error.argument, allowed(error))
             }
@@ -401,6 +424,31 @@ fn read_fill(table: &mut Table<'_>) -> ReadResult<Fill> {
             .or(above_crown_m.map(FillLevel::AboveCrown))
             .ok_or(FaultRecorded)?,
         density_kg_m3,
+    })
+}
+
+/// Reads `[vehicle]`.
+fn read_vehicle(table: &mut Table<'_>) -> ReadResult<Vehicle> {
+    let axles_kg = table.read_required("axles_kg", &list_of(&MAGNITUDE));
+    let spacing_m = table.optional("spacing_m", &list_of(&within(&(1e-3..=1e6))));
+    let spread = table.or("spread", &one_of(Spread::ALL), Spread::None);
+    table.check_faultless()?;
+    let (axles, spacings) = (axles_kg.len(), spacing_m.as_ref().map_or(0, Vec::len));
+    table.refuse(
+        axles_kg.is_empty(),
+        "axles_kg",
+        "has no axle: give their loads in kg",
+    )?;
+    if spacings + 1 != axles {
+        let wrong = format!(
+            "has {axles} axles and {spacings} distances between them: give the distance of each axle from the one before in `spacing_m`"
+        );
+        return Err(table.fault_of_table(wrong));
+    }
+    Ok(Vehicle {
+        axles_kg,
+        spacing_m: spacing_m.unwrap_or_default(),
+        spread,
     })
 }
 

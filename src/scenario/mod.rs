@@ -619,6 +619,7 @@ impl Scenario {
     /// # Errors
     /// The table or the key to add, or the command to use.
     pub fn check_for_run(&self) -> Result<(), String> {
+        self.check_without_live_loads()?;
         if self.ground.is_some() || self.initial.is_some() {
             return self.check_restitution();
         }
@@ -629,6 +630,16 @@ impl Scenario {
                 format!("{give}; the records of [suite] are run by `archrock suite SCENARIO`")
             }
             None => give.to_owned(),
+        })
+    }
+
+    /// Rejects live loads and vehicles, for all studies but limit analysis.
+    ///
+    /// # Errors
+    /// The tables to remove.
+    pub fn check_without_live_loads(&self) -> Result<(), String> {
+        ensure(self.structure.under_live_loads().is_none(), || {
+            "live loads are computed by `limit` alone: for other studies leave out `live` of [[load]], and [vehicle]".to_owned()
         })
     }
 

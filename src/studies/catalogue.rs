@@ -357,6 +357,10 @@ impl StudyKind {
         sinks: Sinks<'_>,
     ) -> Result<Computation, StudyError> {
         let (scenario, figure) = (&scenarios[0], style.figure);
+        if self != LIMIT {
+            let fits = scenario.check_without_live_loads();
+            fits.map_err(StudyError::Scenario)?;
+        }
         let complete = |results| Computation::Complete(Box::new(results), None);
         let mut done = match self.way {
             Way::Models(results) => results(scenarios, options, figure, work, sinks).map(complete),

@@ -5,6 +5,7 @@ mod elastic_joint;
 mod four_link_rows;
 mod impact;
 mod impulse_line;
+mod live_loads;
 mod rows;
 mod shapes;
 pub mod spread;

@@ -58,7 +58,7 @@ fn add(tables: &mut Vec<Described>, path: &str, schema: &Value) {
 }
 
 /// The order of the reference.
-const ORDER: [&str; 24] = [
+const ORDER: [&str; 25] = [
     "",
     "arch",
     "pointed_arch",
@@ -70,6 +70,7 @@ const ORDER: [&str; 24] = [
     "piers",
     "fill",
     "load",
+    "vehicle",
     "tie",
     "supports",
     "free_hinges",

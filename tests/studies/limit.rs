@@ -26,12 +26,12 @@ use proptest::prelude::*;
 use serde_json::Value;
 
 /// `row . x <= bound`.
-type Constraint = (Vec<f64>, f64);
+pub type Constraint = (Vec<f64>, f64);
 
 /// Maximises `goal . x` under the constraints, by Seidel's incremental algorithm. Constraints are added one by
 /// one; the optimum moves onto the plane of each that it violates, where the problem has one variable less.
 /// `None` if no `x` is feasible. Needs a bounding box among the first constraints (see `boxed`).
-fn maximise(goal: &[f64], constraints: &[Constraint], half_width: f64) -> Option<Vec<f64>> {
+pub fn maximise(goal: &[f64], constraints: &[Constraint], half_width: f64) -> Option<Vec<f64>> {
     let n = goal.len();
     if n == 1 {
         let (mut low, mut high) = (-half_width, half_width);

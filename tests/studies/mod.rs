@@ -9,7 +9,7 @@ mod fragility;
 mod free_hinges;
 mod friction_demand;
 mod impact;
-mod limit;
+pub mod limit;
 mod loads;
 mod map;
 mod map_accuracy;

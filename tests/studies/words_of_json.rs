@@ -194,7 +194,8 @@ fn same_printed(arguments: &[&str], words_of: WordsOf) {
 fn limits_have_the_words_of_their_json() {
     let slips = ["--set", "free_hinges.friction_coefficient=0.4"];
     let moves = ["--set", "supports.right.spread_m=0.001"];
-    let cases: [(&str, &[&[&str]]); 8] = [
+    let cases: [(&str, &[&[&str]]); 9] = [
+        ("recipes/road-bridge.toml", &[]),
         ("column-pulse.toml", &[]),
         ("semicircle-pulse.toml", &[]),
         ("drums-step-pair.toml", &[&slips]),

@@ -111,7 +111,7 @@ function exchange(text, tables, [from, to], replacement, keys) {
 find("structure").addEventListener("change", () => {
   const name = find("structure").value;
   const isColumn = [name, last.kind].includes("column");
-  const old = KINDS.concat(isColumn ? ["piers", "fill", "load", "tie"] : []);
+  const old = KINDS.concat(isColumn ? ["piers", "fill", "load", "vehicle", "tie"] : []);
   const [, , table] = STRUCTURES.find(([one]) => one === name);
   edit(exchange(find("text").value, old, [last.kind, name], table, isColumn ? [] : ["voussoirs", "depth_m", "density_kg_m3"]));
 });

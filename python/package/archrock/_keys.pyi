@@ -725,6 +725,7 @@ class LimitKeys:
     ties: LimitTies | None
     four_links: LimitFourLinks | None
     friction: LimitFriction | None
+    live: LimitLive | None
     warnings: list[str]
     unlikely: list[LimitUnlikely]
     bodies: list[str]
@@ -751,6 +752,7 @@ class LimitResult:
     ties: LimitTies | None
     four_links: LimitFourLinks | None
     friction: LimitFriction | None
+    live: LimitLive | None
     warnings: list[str]
     unlikely: list[LimitUnlikely]
     bodies: list[str]
@@ -863,6 +865,34 @@ class LimitFrictionRightMechanismKeys:
     slips_towards: str | None
 
 class LimitFrictionRightMechanism(Summary, LimitFrictionRightMechanismKeys):
+    pass
+
+class LimitLiveKeys:
+    without_sliding: LimitLiveWithoutSliding
+    with_friction: LimitLiveWithoutSliding | None
+    positions: list[LimitLivePositions]
+
+class LimitLive(Summary, LimitLiveKeys):
+    pass
+
+class LimitLiveWithoutSlidingKeys:
+    multiplier: float | None
+    weight_n: float | None
+    x_m: float | None
+    towards: str | None
+    mechanism: list[LimitFrictionRightMechanism]
+    thrust_line_m: list[list[float] | None]
+
+class LimitLiveWithoutSliding(Summary, LimitLiveWithoutSlidingKeys):
+    pass
+
+class LimitLivePositionsKeys:
+    towards: str
+    x_m: float
+    multiplier: float | None
+    multiplier_with_friction: float | None
+
+class LimitLivePositions(Summary, LimitLivePositionsKeys):
     pass
 
 class LimitUnlikelyKeys:

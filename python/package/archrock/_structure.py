@@ -35,7 +35,7 @@ class Structure(Described):
 
     Args:
         tables: tables such as ``arch``, ``column``, ``body``, ``pointed_arch``, ``elliptic_arch``, ``basket_arch``, ``blocks``,
-            ``piers``, ``fill``, ``load`` and ``tie`` (lists), with their keys; ``blocks`` may name files, which are read now.
+            ``piers``, ``fill``, ``vehicle``, ``load`` and ``tie`` (lists), with their keys; ``blocks`` may name files, which are read now.
 
     Raises:
         ValueError: when the tables are wrong or the structure does not stand; all errors are reported together.

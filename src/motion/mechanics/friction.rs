@@ -7,12 +7,13 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, SolverStatus};
+use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::cone_program;
 use crate::bisection::{Width, try_bisect};
-use crate::mechanics::{Edge, Row, RowState, Sway};
+use crate::mechanics::{Edge, Row, RowState, Sway, Weight};
 
 /// Rate, over the largest one, that counts as zero.
 const LEAST_RATE: f64 = 1e-4;
@@ -24,6 +25,8 @@ const LARGEST_COEFFICIENT: f64 = 100.0;
 const PUSH_TOLERANCE: f64 = 1e-7;
 /// Excess of friction over its bound, over the weight, that counts as zero.
 const FRICTION_EXCESS_TOLERANCE: f64 = 1e-8;
+/// Normal force, over the largest one, from which on a joint has a thrust point.
+const LEAST_NORMAL: f64 = 1e-6;
 
 /// Joint that opens or slips in a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -54,6 +57,17 @@ impl FrictionOnset {
             .iter()
             .any(|joint| joint.slips_towards.is_some())
     }
+}
+
+/// Collapse of a row under live loads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LiveCollapse {
+    /// Factor on the live loads: with friction an upper bound by the associated flow rule.
+    pub multiplier: f64,
+    /// Joints that open or slip, from left to right.
+    pub yields: Vec<YieldingJoint>,
+    /// Thrust line at collapse: its point in each joint, in metres; `None` without compression.
+    pub thrust_m: Vec<Option<Vector2<f64>>>,
 }
 
 /// Reason why there is no such push.
@@ -113,9 +127,49 @@ pub(crate) fn onset_of_standing(
 ) -> Result<Option<FrictionOnset>, FrictionError> {
     let program = FrictionProgram::new(row, stance, coefficient, Objective::Push);
     let found = program.solve(-sway.sign(), FrictionError::CannotStand(coefficient))?;
-    Ok(found.map(|(objective, yields)| FrictionOnset {
-        acceleration_g: sway.sign() * objective,
-        yields,
+    Ok(found.map(|found| FrictionOnset {
+        acceleration_g: sway.sign() * found.objective,
+        yields: found.yields,
+    }))
+}
+
+/// Computes the largest factor on live loads that an undeformed row carries beside its own weight and its tie forces at rest, with a coefficient of
+/// friction, or without slip (`None`). Live loads act down and have no inertia. `None` if the row carries any factor.
+///
+/// # Errors
+/// If the row is not stable without the live loads, or the linear program is not solved.
+pub fn live_collapse(
+    row: &Row,
+    coefficient: Option<f64>,
+    live: &[Weight],
+) -> Result<Option<LiveCollapse>, FrictionError> {
+    let coefficient = coefficient.unwrap_or(LARGEST_COEFFICIENT);
+    let stance = RowState::undeformed(row);
+    // The program is well scaled for live loads as heavy as the row.
+    let live_kg: f64 = live.iter().map(|weight| weight.mass_kg).sum();
+    let scale = row.mass_kg() / live_kg;
+    let scaled = live.iter().map(|weight| Weight {
+        mass_kg: weight.mass_kg * scale,
+        ..*weight
+    });
+    let scaled: Vec<Weight> = scaled.collect();
+    let program = FrictionProgram::new(row, &stance, coefficient, Objective::Live(&scaled));
+    let found = program.solve(-1.0, FrictionError::CannotStand(coefficient))?;
+    Ok(found.map(|found| {
+        let normal = |corners: &[f64; 2]| corners[0] + corners[1];
+        let largest = found.corners.iter().map(normal).fold(0.0, f64::max);
+        let joints = row.joints.iter().zip(&found.corners);
+        let thrust_m = joints.map(|(joint, corners)| {
+            let part = corners[1].max(0.0) / normal(corners);
+            let across_m = joint.extrados_m - joint.intrados_m;
+            (normal(corners) > LEAST_NORMAL * largest)
+                .then(|| joint.intrados_m + across_m * part.min(1.0))
+        });
+        LiveCollapse {
+            multiplier: found.objective * scale,
+            yields: found.yields,
+            thrust_m: thrust_m.collect(),
+        }
     }))
 }
 
@@ -138,7 +192,7 @@ pub(crate) fn stands_at(
 ) -> Result<bool, FrictionError> {
     let program = FrictionProgram::new(row, stance, coefficient, Objective::FrictionExcess);
     let found = program.solve(1.0, FrictionError::NeverStands)?;
-    Ok(found.is_none_or(|(excess, _)| excess <= FRICTION_EXCESS_TOLERANCE))
+    Ok(found.is_none_or(|found| found.objective <= FRICTION_EXCESS_TOLERANCE))
 }
 
 /// Least coefficient of friction for which a row carries its own weight, with a tolerance of 1e-7.
@@ -197,11 +251,21 @@ pub fn demand_at(
 
 /// Objective of a linear program.
 #[derive(Clone, Copy, PartialEq)]
-enum Objective {
+enum Objective<'a> {
     /// Largest push, in multiples of gravity.
     Push,
+    /// Largest factor on live loads.
+    Live(&'a [Weight]),
     /// Least excess of friction over its bound, common to all joints, for which the row is stable; in units of the weight.
     FrictionExcess,
+}
+
+/// Solution of a linear program.
+struct Found {
+    objective: f64,
+    yields: Vec<YieldingJoint>,
+    /// Normal forces at intrados and extrados of each joint, over the weight.
+    corners: Vec<[f64; 2]>,
 }
 
 /// Linear program. Unknowns: the objective, then `N_I`, `N_E` and `T` of every joint in units of the weight. Rows: equilibrium of every block, zero
@@ -234,7 +298,7 @@ fn loads(row: &Row, stance: &RowState) -> Vec<f64> {
 }
 
 impl FrictionProgram {
-    fn new(row: &Row, stance: &RowState, coefficient: f64, objective: Objective) -> Self {
+    fn new(row: &Row, stance: &RowState, coefficient: f64, objective: Objective<'_>) -> Self {
         let placement = &stance.placement;
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let centres_m = &placement.centres_m;
@@ -243,10 +307,22 @@ impl FrictionProgram {
         let mut entries = Vec::new();
         let mut put = |row, column, value: f64| entries.push((row, column, value));
         let mut right = loads(row, stance);
-        if objective == Objective::Push {
-            for (index, block) in row.blocks.iter().enumerate() {
-                put(3 * index, 0, block.mass_kg / row.mass_kg());
+        match objective {
+            Objective::Push => {
+                for (index, block) in row.blocks.iter().enumerate() {
+                    put(3 * index, 0, block.mass_kg / row.mass_kg());
+                }
             }
+            Objective::Live(live) => {
+                for (index, centre_m) in centres_m.iter().enumerate() {
+                    let own = live.iter().filter(|weight| weight.block == index);
+                    let down = |weight: &Weight| -weight.mass_kg / row.mass_kg();
+                    let turns = |weight: &Weight| down(weight) * (weight.x_m - centre_m.x);
+                    put(3 * index + 1, 0, own.clone().map(down).sum());
+                    put(3 * index + 2, 0, own.map(turns).sum::<f64>() / size_m);
+                }
+            }
+            Objective::FrictionExcess => {}
         }
         for (index, gaps) in placement.gaps_m.iter().enumerate() {
             for edge in (0..2).filter(|edge| gaps[*edge] > 0.0) {
@@ -304,7 +380,7 @@ impl FrictionProgram {
         }
     }
 
-    /// Minimises `factor` times the objective. Returns the objective, and the joints that open or slip; `None` if the objective is unbounded.
+    /// Minimises `factor` times the objective; `None` if the objective is unbounded.
     ///
     /// # Errors
     /// `unbalanced` if no forces are in equilibrium with the row.
@@ -312,7 +388,7 @@ impl FrictionProgram {
         &self,
         factor: f64,
         unbalanced: FrictionError,
-    ) -> Result<Option<(f64, Vec<YieldingJoint>)>, FrictionError> {
+    ) -> Result<Option<Found>, FrictionError> {
         let width = 1 + 3 * self.joints;
         let mut objective = vec![0.0; width];
         objective[0] = factor;
@@ -343,6 +419,11 @@ impl FrictionProgram {
             });
         let yields = yields
             .filter(|it| it.opens_intrados || it.opens_extrados || it.slips_towards.is_some());
-        Ok(Some((solution.x[0], yields.collect())))
+        let forces = solution.x[1..].chunks(3);
+        Ok(Some(Found {
+            objective: solution.x[0],
+            yields: yields.collect(),
+            corners: forces.map(|forces| [forces[0], forces[1]]).collect(),
+        }))
     }
 }

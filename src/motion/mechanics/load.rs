@@ -2,6 +2,8 @@
 //!
 //! A load has a mass, a horizontal thrust, or both. The mass is fixed to the block that carries it, or only its weight acts on the block. This weight
 //! and the thrust are constant forces: they keep size and direction while their point moves, and the ground motion does not accelerate them.
+//!
+//! A live load is no part of the structure: limit analysis computes the factor on it at which the structure collapses.
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -30,6 +32,9 @@ pub struct PlacedLoad {
     /// True if the mass moves with the block that carries it; false if its weight is a constant force, without inertia.
     #[serde(skip_serializing_if = "is_true")]
     pub moves: bool,
+    /// True for a live load, whose multiple at collapse limit analysis computes.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub live: bool,
     /// Constant horizontal force, in N, positive to the right.
     #[serde(skip_serializing_if = "is_zero")]
     pub thrust_n: f64,
@@ -53,9 +58,21 @@ impl Default for PlacedLoad {
             pier: None,
             height_m: None,
             moves: true,
+            live: false,
             thrust_n: 0.0,
         }
     }
+}
+
+/// Weight on a block of a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weight {
+    /// Index of the block.
+    pub block: usize,
+    /// Weight over gravity, in kg.
+    pub mass_kg: f64,
+    /// Line of action, in metres to the right.
+    pub x_m: f64,
 }
 
 /// Largest thrust, in N.
@@ -105,12 +122,20 @@ impl PlacedLoad {
 
     /// Mass that moves with the block, in kg.
     pub const fn moving_mass_kg(&self) -> f64 {
-        if self.moves { self.mass_kg } else { 0.0 }
+        if self.moves && !self.live {
+            self.mass_kg
+        } else {
+            0.0
+        }
     }
 
     /// Constant force, in N.
     pub fn constant_force_n(&self, gravity_m_s2: f64) -> Vector2<f64> {
-        let still_kg = self.mass_kg - self.moving_mass_kg();
+        let still_kg = if self.moves || self.live {
+            0.0
+        } else {
+            self.mass_kg
+        };
         Vector2::new(self.thrust_n, -still_kg * gravity_m_s2)
     }
 

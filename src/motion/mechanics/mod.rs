@@ -62,7 +62,7 @@ pub use self::geometry::ring::{Edge, MassMoments, Ring};
 pub use self::given_body::GivenBody;
 pub(crate) use self::joints::Placement;
 pub(crate) use self::lanes::{Lanes, Real};
-pub use self::load::{LARGEST_THRUST_N, PlacedLoad};
+pub use self::load::{LARGEST_THRUST_N, PlacedLoad, Weight};
 pub use self::masonry::{Masonry, MasonryShape};
 pub use self::parts::{Outline, Parts, StructureSection};
 pub(crate) use self::row_state::RowState;

@@ -181,6 +181,14 @@ impl Structure {
         Some(wall.side)
     }
 
+    /// Arch with live loads or a vehicle, which limit analysis alone computes; `None` for other structures.
+    pub(crate) fn under_live_loads(&self) -> Option<&Masonry> {
+        match self {
+            Self::Masonry(masonry) => Some(&**masonry).filter(|it| it.has_live_loads()),
+            Self::Arch(_) | Self::Column(_) => None,
+        }
+    }
+
     /// Fill and loads for drawings.
     pub fn fill_and_loads(&self) -> (LoadOutlines, &[PlacedLoad]) {
         match self {
@@ -335,7 +343,7 @@ fn read_arch(
     if (free_hinges || !alone) && voussoirs.is_none() && joints_deg.is_none() {
         return Err(table.fault_of_table(match free_hinges {
             true => "lacks `voussoirs`: joints open between blocks; give the number of voussoirs",
-            false => "lacks `voussoirs`, which piers, fill, loads and ties need: give their number",
+            false => "lacks `voussoirs`, which piers, fill, loads, vehicles and ties need: give their number",
         }));
     }
     if joints_deg.is_some() || !alone {

@@ -113,6 +113,7 @@ pub fn forces_in_words(load: &PlacedLoad) -> Vec<(f64, String)> {
     if load.mass_kg > 0.0 {
         let mass = metres(load.mass_kg);
         forces.push(match load.moves {
+            _ if load.live => (0.0, format!("{mass} kg live")),
             true => (0.0, format!("{mass} kg")),
             false => (0.0, format!("{mass} kg as constant weight")),
         });
@@ -165,8 +166,9 @@ fn masonry_words(masonry: &Masonry) -> Vec<String> {
             0.0 => String::new(),
             _ => format!(" over {width} m"),
         };
+        let live = if load.live { "live " } else { "" };
         match (load.pier, load.moves && load.thrust_n == 0.0) {
-            (None, true) => format!("load of {mass} kg{over} at x = {x} m"),
+            (None, true) => format!("{live}load of {mass} kg{over} at x = {x} m"),
             (None, false) => format!("load at x = {x} m: {}", load_in_words(load)),
             (Some(side), _) => {
                 let at = match load.height_m.map(metres) {
@@ -175,6 +177,18 @@ fn masonry_words(masonry: &Masonry) -> Vec<String> {
                 };
                 let (side, load) = (side.name(), load_in_words(load));
                 format!("load on the {side} pier {at}: {load}")
+            }
+        }
+    }));
+    parts.extend(masonry.vehicle.as_ref().map(|vehicle| {
+        let axles = vehicle.axles_kg.iter().map(|axle_kg| metres(*axle_kg));
+        let axles = axles.collect::<Vec<_>>().join(", ");
+        match &vehicle.spacing_m[..] {
+            [] => format!("vehicle with one axle of {axles} kg"),
+            spacing_m => {
+                let apart = spacing_m.iter().map(|spacing_m| metres(*spacing_m));
+                let apart = apart.collect::<Vec<_>>().join(", ");
+                format!("vehicle with axles of {axles} kg, {apart} m apart")
             }
         }
     }));

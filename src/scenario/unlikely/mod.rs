@@ -15,7 +15,7 @@ use super::prelude::*;
 use super::structure::bounds_m;
 use super::{Ground, MotionModel, Scenario, Structure};
 use crate::Model;
-use crate::mechanics::MasonryShape;
+use crate::mechanics::{MasonryShape, PlacedLoad};
 
 /// Gravity on Earth, from the equator to the poles, and the rounded one of many papers, in m/s2.
 const GRAVITY_M_S2: RangeInclusive<f64> = 9.75..=10.0;
@@ -151,10 +151,7 @@ impl Scenario {
         let row = has_forces.then(|| self.structure.row().ok()).flatten();
         row.map_or_else(Vec::new, |row| {
             let (_, loads) = self.structure.fill_and_loads();
-            let moving_kg = loads
-                .iter()
-                .filter(|load| load.moves)
-                .map(|load| load.mass_kg);
+            let moving_kg = loads.iter().map(PlacedLoad::moving_mass_kg);
             let mass_kg = row.mass_kg() - moving_kg.sum::<f64>();
             usual_forces(mass_kg, self.structure.size_m(), self.gravity_m_s2()).into()
         })

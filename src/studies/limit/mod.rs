@@ -1,8 +1,12 @@
 //! Limit analysis of a scenario: the ground acceleration that starts the structure, and its mechanism.
 
+mod live;
 mod page;
 mod report;
+mod yielding;
 
+use self::live::live_limit;
+pub use self::live::{LiveAnswer, LiveLimit, VehiclePosition};
 pub(super) use self::page::{FILES, results};
 use self::report::open_joints;
 pub use self::report::{
@@ -46,6 +50,7 @@ fn summary(scenario: &Scenario) -> Result<LimitSummary, StudyError> {
         row.map_err(StudyError::scenario)
     };
     let coefficient = scenario.motion.options.friction_coefficient();
+    let live = live_limit(scenario)?;
     if let Some(movements) = scenario.motion.supports() {
         return compute_moved_row(scenario, &row()?, &movements, coefficient);
     }
@@ -74,6 +79,7 @@ fn summary(scenario: &Scenario) -> Result<LimitSummary, StudyError> {
     if let Some(coefficient) = coefficient {
         summary.friction = Some(with_friction(&row()?, coefficient, summary.wall_behind)?);
     }
+    summary.live = live;
     summary.warnings = Warnings::new(scenario.unlikely_in(&Varied::default()), []);
     Ok(summary)
 }

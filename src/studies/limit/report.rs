@@ -6,6 +6,8 @@ use askama::Template;
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
+use super::live::LiveLimit;
+use super::yielding::motion_in_words;
 use crate::argument::format_fixed;
 use crate::mechanics::friction::YieldingJoint;
 use crate::mechanics::settling::Pin;
@@ -63,6 +65,9 @@ pub struct LimitSummary {
     /// The onset of motion with slipping joints; absent unless joints may slip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<Friction>,
+    /// Collapse under live loads, or under a vehicle; the other answers are those without them. Absent without live loads and vehicle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub live: Option<LiveLimit>,
     /// The warnings.
     #[serde(flatten)]
     pub warnings: Warnings,
@@ -200,6 +205,13 @@ impl Report for LimitSummary {
             let [right, left] = Sides::of(|sway| friction.start_in_words(&sway)).into();
             format!("{}: {right}; {left}", friction.heading())
         });
+        if let Some(live) = &self.live {
+            let answers = live.in_words().into_iter();
+            return answers
+                .map(|words| words.join("; "))
+                .collect::<Vec<_>>()
+                .join("; ");
+        }
         let all = self
             .pushes_in_words()
             .into_iter()
@@ -441,19 +453,4 @@ impl MechanismHinge {
             }
         }
     }
-}
-
-/// Motion of a joint in words.
-fn motion_in_words(joint: &YieldingJoint) -> String {
-    // Hinges are named by the edge about which the joint turns.
-    let opens = match (joint.opens_intrados, joint.opens_extrados) {
-        (true, true) => Some("parts at both edges".to_owned()),
-        (true, false) => Some("opens with its hinge at the extrados".to_owned()),
-        (false, true) => Some("opens with its hinge at the intrados".to_owned()),
-        (false, false) => None,
-    };
-    let slips = joint.slips_towards;
-    let slips = slips.map(|edge| format!("slips, its right side towards the {}", edge.name()));
-    let does: Vec<String> = opens.into_iter().chain(slips).collect();
-    does.join(" and ")
 }

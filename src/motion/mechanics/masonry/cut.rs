@@ -40,6 +40,12 @@ impl CutArch {
         joints.collect()
     }
 
+    /// Ends of the extrados, in metres to the right.
+    pub fn ends_m(&self) -> [f64; 2] {
+        let joints = self.joints();
+        [joints[0], joints[joints.len() - 1]].map(|joint| joint.extrados_m.x)
+    }
+
     /// Extrados of a voussoir from left to right.
     pub(crate) fn extrados_of(&self, voussoir: usize) -> Vec<Curve> {
         let ends = [self.joints[voussoir][1], self.joints[voussoir + 1][1]];

@@ -65,7 +65,7 @@ impl Fill {
     }
 
     /// Height of its top, in metres.
-    fn level_m(&self, arch: &CutArch) -> Result<f64, ArgumentError> {
+    pub(super) fn level_m(&self, arch: &CutArch) -> Result<f64, ArgumentError> {
         match self.level {
             FillLevel::AboveSpringing(height_m) => {
                 require_within("height_m", height_m, MAGNITUDE)?;

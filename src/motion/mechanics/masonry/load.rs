@@ -8,19 +8,48 @@ use crate::argument::{ArgumentError, require};
 use crate::mechanics::{Block, MassMoments, PlacedLoad, Row, Sway};
 
 impl PlacedLoad {
+    /// Adds its moving mass to the voussoirs that carry it. A live load and a constant force add none.
+    ///
+    /// # Errors
+    /// If the load is not on the extrados.
     pub(super) fn add_to(
         &self,
         extra: &mut [Option<Block>],
         arch: &CutArch,
     ) -> Result<(), ArgumentError> {
-        if self.moving_mass_kg() == 0.0 {
-            // A constant force needs a point of the extrados, as a mass does.
-            let mass = Self::mass(1.0, self.x_m);
-            return mass.add_to(&mut vec![None; extra.len()], arch);
+        let bodies = self.bodies(arch);
+        let placed_kg: f64 = bodies.iter().map(|(_, body)| body.mass_kg).sum();
+        if self.moving_mass_kg() > 0.0 {
+            for (voussoir, own) in bodies {
+                let extra = &mut extra[voussoir];
+                *extra = Some(extra.map_or(own, |known| known.with(&own)));
+            }
         }
+        // Part of the mass is missing if the patch extends beyond an end of the arch.
+        let all_stands = (placed_kg / self.placed_kg() - 1.0).abs() < 1e-9;
+        let ends_m = arch.ends_m();
+        let half_m = 0.5 * self.width_m;
+        let (from_m, to_m) = (ends_m[0] + half_m, ends_m[1] - half_m);
+        let allowed = match from_m < to_m {
+            true => format!("from {from_m:.6} to {to_m:.6}, so that it stands on the extrados"),
+            false => "on the extrados, which is no upper side here: give the load as a part of a block, by its density or outline".to_owned(),
+        };
+        require(all_stands, "x_m", self.x_m, allowed).map(|_| ())
+    }
+
+    /// Mass of its bodies in kg. A constant force needs a point of the extrados, as a mass does.
+    const fn placed_kg(&self) -> f64 {
+        match self.live {
+            false if self.moving_mass_kg() == 0.0 => 1.0,
+            _ => self.mass_kg,
+        }
+    }
+
+    /// The mass as bodies, each with the voussoir that carries it. What extends beyond the ends of the arch is left out.
+    pub(super) fn bodies(&self, arch: &CutArch) -> Vec<(usize, Block)> {
         let (from_x, to_x) = (self.x_m - 0.5 * self.width_m, self.x_m + 0.5 * self.width_m);
-        let mut placed_kg = 0.0;
-        for (voussoir, extra) in extra.iter_mut().enumerate() {
+        let mut bodies: Vec<(usize, Block)> = Vec::new();
+        for voussoir in 0..arch.voussoirs() {
             for piece in arch.extrados_of(voussoir) {
                 let (start, end) = (piece.point(0.0).x, piece.point(1.0).x);
                 let part = |x: f64| match x {
@@ -34,7 +63,7 @@ impl PlacedLoad {
                     }
                     let loaded = piece.between(part(from_x), part(to_x));
                     let moments = loaded.integral(|point, derivative| {
-                        let mass = self.mass_kg / self.width_m * derivative.x;
+                        let mass = self.placed_kg() / self.width_m * derivative.x;
                         MassMoments::of_body(mass, point, 0.0)
                     });
                     Block {
@@ -43,30 +72,19 @@ impl PlacedLoad {
                         inertia_kg_m2: moments.central_polar().max(0.0),
                     }
                 } else {
-                    if !(start..=end).contains(&self.x_m) || placed_kg > 0.0 {
+                    if !(start..=end).contains(&self.x_m) || !bodies.is_empty() {
                         continue;
                     }
                     Block {
-                        mass_kg: self.mass_kg,
+                        mass_kg: self.placed_kg(),
                         centre_m: piece.point(part(self.x_m)),
                         inertia_kg_m2: 0.0,
                     }
                 };
-                placed_kg += own.mass_kg;
-                *extra = Some(extra.map_or(own, |known| known.with(&own)));
+                bodies.push((voussoir, own));
             }
         }
-        // Part of the mass is missing if the patch extends beyond an end of the arch.
-        let all_stands = (placed_kg / self.mass_kg - 1.0).abs() < 1e-9;
-        let joints = arch.joints();
-        let ends_m = [joints[0], joints[joints.len() - 1]].map(|joint| joint.extrados_m.x);
-        let half_m = 0.5 * self.width_m;
-        let (from_m, to_m) = (ends_m[0] + half_m, ends_m[1] - half_m);
-        let allowed = match from_m < to_m {
-            true => format!("from {from_m:.6} to {to_m:.6}, so that it stands on the extrados"),
-            false => "on the extrados, which is no upper side here: give the load as a part of a block, by its density or outline".to_owned(),
-        };
-        require(all_stands, "x_m", self.x_m, allowed).map(|_| ())
+        bodies
     }
 
     /// Block of the pier that carries this load (at a joint, the lower one), and its point in metres.

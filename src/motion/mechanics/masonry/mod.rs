@@ -6,6 +6,7 @@
 mod cut;
 mod fill;
 mod given;
+mod live;
 mod load;
 mod middle_line;
 mod pier;
@@ -27,6 +28,7 @@ use crate::mechanics::{Joint, Row, RowError, Supports, Sway, Tie};
 use cut::CutArch;
 pub use fill::{Fill, FillColumn, FillLevel};
 pub use given::{GivenBlocks, OutlineError};
+pub use live::{LoadedExtrados, MAX_AXLES, Spread, Vehicle};
 use middle_line::cut_elliptic;
 pub use middle_line::{BasketArch, CircularArch};
 use pier::Courses;
@@ -182,6 +184,9 @@ pub struct Masonry {
     /// Loads on its extrados and on its piers.
     #[serde(rename = "load", skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<PlacedLoad>,
+    /// Vehicle that crosses it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vehicle: Option<Vehicle>,
     /// Blocks and joints.
     #[serde(skip)]
     pub row: Row,
@@ -255,6 +260,12 @@ pub enum MasonryError {
     /// The blocks do not form a row.
     #[error(transparent)]
     Row(#[from] RowError),
+    /// A number of the vehicle is out of range.
+    #[error("vehicle: {0}")]
+    Vehicle(ArgumentError),
+    /// A vehicle spreads through fill, and there is none.
+    #[error("the axles spread through fill, and there is none")]
+    NoFill,
     /// Blocks have piers or fill, which are possible only for arches given by their dimensions.
     #[error("blocks have no piers and no fill: give those as blocks")]
     Blocks,
@@ -337,6 +348,7 @@ impl Masonry {
             piers,
             fill,
             loads,
+            vehicle: None,
             row,
             load_outlines,
         })
