@@ -639,7 +639,7 @@ impl Scenario {
     /// The tables to remove.
     pub fn check_without_live_loads(&self) -> Result<(), String> {
         ensure(self.structure.under_live_loads().is_none(), || {
-            "live loads are computed by `limit` alone: for other studies leave out `live` of [[load]], and [vehicle]".to_owned()
+            "live loads are computed by `limit` alone: for other studies leave out [vehicle], and each [[load]] with `live`".to_owned()
         })
     }
 

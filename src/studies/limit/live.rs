@@ -15,6 +15,8 @@ use crate::{Scenario, Structure, Sway};
 
 /// Number of equal steps of a vehicle from where its first axle comes onto the arch to where its last one leaves it.
 const STEPS: usize = 200;
+/// Number of positions of a vehicle in words.
+const PRINTED: usize = 12;
 /// Number of times that the worst position of a vehicle is sought again on steps a tenth as long.
 const FINER: i32 = 3;
 
@@ -325,6 +327,22 @@ impl LiveLimit {
     /// Returns the joints of the mechanism of an answer in words.
     pub(super) fn joints_in_words(answer: &LiveAnswer) -> impl Iterator<Item = String> {
         answer.mechanism.iter().map(joint_in_words)
+    }
+
+    /// Returns some positions of the vehicle on the way of the worst one, each with its factor without sliding, as a table.
+    pub(super) fn positions_in_words(&self) -> Vec<String> {
+        let towards = self.without_sliding.towards;
+        let way = self
+            .positions
+            .iter()
+            .filter(|place| Some(place.towards) == towards);
+        let places: Vec<_> = way.filter(|place| place.multiplier.is_some()).collect();
+        let shown = places.iter().step_by(places.len().div_ceil(PRINTED).max(1));
+        let lines = shown.filter_map(|place| {
+            let factor = format_fixed(place.multiplier?, 3);
+            Some(format!("{:>8} {factor:>10}", format_fixed(place.x_m, 2)))
+        });
+        lines.collect()
     }
 
     /// Makes the table of the positions of the vehicle.
