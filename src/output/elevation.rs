@@ -137,9 +137,6 @@ pub(crate) fn draw_hinges(
     sheet.finish()
 }
 
-/// Rotation at which bodies are drawn if they have no unstable equilibrium, in radians.
-const DRAWN_RAD: f64 = 0.05;
-
 /// Draws a wall whose top is held, bent by a push to the right and to the left, and marks on its hinges.
 pub(crate) fn draw_bent(
     figure: Figure,
@@ -159,7 +156,7 @@ pub(crate) fn draw_bent(
                 let middle = figure.width_px * (0.5 - 0.24 * sway.sign());
                 let place = SheetTransform::over(scene.frame_m(), middle, part);
                 let bent =
-                    held.displaced(held.end_rad().map_or(DRAWN_RAD, |end_rad| 0.25 * end_rad));
+                    held.displaced(held.unstable_rad().map_or(0.0, |end_rad| 0.25 * end_rad));
                 let pose = |drum| {
                     held.body_of(drum)
                         .map_or(Pose::UNDEFORMED, |body| bent.poses[body])
@@ -173,7 +170,7 @@ pub(crate) fn draw_bent(
                     None => ("still".to_owned(), STONE),
                 });
                 view.draw_ties(drawing);
-                view.draw_loads(drawing, Some(part.top), true);
+                view.draw_loads(drawing, Some(part.top - 24.0), true);
                 for (hinge_m, spot) in bent.hinges_m.iter().zip(first..) {
                     drawing.circle("hinge", place.px(*hinge_m), 5.0, HINGE);
                     if let Some(spot) = spots.get(spot) {

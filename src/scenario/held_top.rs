@@ -9,7 +9,7 @@ pub(super) const NO_WALL: &str = "cannot be combined with [column.back]: a wall 
 
 /// Reads `[column.top]`.
 pub(super) fn read(table: &mut Table<'_>) -> ReadResult<HeldTop> {
-    let weight_n = table.read_required("weight_n", &MAGNITUDE);
+    let weight_n = table.read_required("weight_n", &within(&(1e-3..=1e12)));
     let x_m = table.or("x_m", &within(&(-1e6..=1e6)), 0.0);
     table.check_faultless()?;
     Ok(HeldTop { weight_n, x_m })

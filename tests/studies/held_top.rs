@@ -66,7 +66,7 @@ fn limit_prints_the_mechanism_to_either_side() {
     }
     let picture = std::fs::read_to_string(folder.path().join("l/limit.svg")).unwrap();
     let picture = Document::parse(&picture).unwrap();
-    for (name, count) in [("hinge", 4), ("body 1", 2), ("body 2", 2), ("load", 4)] {
+    for (name, count) in [("hinge", 4), ("body 1", 2), ("body 2", 2), ("load", 2)] {
         assert_eq!(named(&picture, name).len(), count, "{name}");
     }
     let words = texts(&picture);
@@ -223,7 +223,7 @@ fn blocks_held_at_both_ends_are_another_structure() {
     let joints: String = (0..8)
         .map(|joint| {
             let y_m = 0.5 * f64::from(joint);
-            format!("-0.225,{y_m},0.225,{y_m}\n")
+            format!("0.225,{y_m},-0.225,{y_m}\n")
         })
         .collect();
     std::fs::write(folder.path().join("j.csv"), joints).unwrap();
@@ -285,7 +285,7 @@ fn what_a_held_top_excludes_is_refused_with_its_remedy() {
     );
     wrong(
         format!("{WALL}[column.top]\nweight_n = 1e3\nx_m = 0.3\n"),
-        &["x_m", "-0.225..=0.225"],
+        &["x_m", "from -0.225 to 0.225"],
     );
     wrong(
         format!("{WALL}top_width_m = 0.4\n{TOP}"),
@@ -299,8 +299,10 @@ fn what_a_held_top_excludes_is_refused_with_its_remedy() {
         format!("{WALL}{TOP}[supports.right]\nspread_m = 0.01\n"),
         &["supports"],
     );
-    std::fs::write(folder.path().join("r.csv"), "0,0\n0.01,0.1\n0.02,0\n").unwrap();
-    let records = "[verify.slv_records]\nfiles = ['r.csv']\nunit = 'g'\n";
+    for record in ["r1.csv", "r2.csv", "r3.csv"] {
+        std::fs::write(folder.path().join(record), "0,0\n0.01,0.1\n0.02,0\n").unwrap();
+    }
+    let records = "[verify]\nunit = 'g'\nslv_records = 'r?.csv'\n";
     refuse(
         &["verify"],
         &format!("{WALL}{TOP}{DEMAND}{records}"),

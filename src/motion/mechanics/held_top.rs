@@ -162,7 +162,8 @@ impl PushedWall {
         let seen = |at_m: Vector2<f64>| sway.seen(at_m);
         let drums = row.blocks.iter();
         let drums = drums.map(|drum| (drum.mass_kg, seen(drum.centre_m)));
-        let pulls = row.ties.iter().flat_map(|tie| {
+        let ties = row.ties.iter().filter(|tie| tie.prestress_n > 0.0);
+        let pulls = ties.flat_map(|tie| {
             let pull_n = seen(tie.force_at_rest_n());
             let ends = tie.ends.into_iter().zip([pull_n, -pull_n]);
             ends.filter_map(move |(end, pull_n)| Some((end.block?, seen(end.at_m), pull_n)))
@@ -432,9 +433,17 @@ impl HeldMechanism {
     /// # Errors
     /// When the linkage reaches its limit before, or the wall has ties.
     pub fn end_rad(&self) -> Result<f64, HeldTopError> {
-        if !self.row.bars().is_empty() {
-            return Err(HeldTopError::Ties);
+        match self.row.bars().is_empty() {
+            true => Ok(self.unstable_rad()?),
+            false => Err(HeldTopError::Ties),
         }
+    }
+
+    /// Rotation of the lower body at which the push becomes zero with the forces at rest, in radians.
+    ///
+    /// # Errors
+    /// When the linkage reaches its limit before.
+    pub fn unstable_rad(&self) -> Result<f64, CapacityError> {
         let resists = |q_rad: f64| Some(self.push_g(&self.bent(q_rad)?) > 0.0);
         let steps = (1_u32..).map(|step| f64::from(step) * STEP_RAD);
         let mut steps = steps.take_while(|q_rad| *q_rad < FRAC_PI_2);
@@ -443,7 +452,7 @@ impl HeldMechanism {
                 let falls = |q_rad| resists(q_rad) == Some(false);
                 Ok(bisect(q_rad - STEP_RAD, q_rad, Width::Rounding, falls).1)
             }
-            _ => Err(CapacityError::Locks(self.sway).into()),
+            _ => Err(CapacityError::Locks(self.sway)),
         }
     }
 

@@ -17,7 +17,7 @@ pub(crate) mod four_links;
 pub mod friction;
 pub(crate) mod geometry;
 mod given_body;
-pub mod held_top;
+mod held_top;
 pub(crate) mod joints;
 pub(crate) mod lanes;
 mod load;
