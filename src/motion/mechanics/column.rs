@@ -29,15 +29,14 @@ use super::back_wall::three_impacts;
 use super::blocks::{GRAVITY_M_S2, MAX_BLOCKS};
 use super::chain::MechanismState;
 use super::given_body::{GivenBody, MAGNITUDE};
-use super::held_top::HeldTop;
 use super::tie::TieError;
 use super::tilting::{Tilting, thrust_section_parts};
 use crate::argument::{ArgumentError, plain, require, require_within};
 use crate::mechanics::four_link::resultant::SectionResultant;
 use crate::mechanics::masonry::LoadOutlines;
 use crate::mechanics::{
-    BackWall, Block, Demand, FourLinkError, Hinge, ImpactLaw, ImpactModel, Link, MechanismChain,
-    NoWallRatio, PlacedLoad, Row, RowError, Sides, Sway, Tie,
+    BackWall, Block, Demand, FourLinkError, HeldTop, Hinge, ImpactLaw, ImpactModel, Link,
+    MechanismChain, NoWallRatio, PlacedLoad, Row, RowError, Sides, Sway, Tie,
 };
 
 /// A free-standing column: a rectangular block on rigid ground, which does not slide.

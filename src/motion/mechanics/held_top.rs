@@ -19,7 +19,6 @@
 use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::Vector2;
-use serde::Serialize;
 use thiserror::Error;
 
 use super::capacity::CapacityError;
@@ -30,15 +29,6 @@ use crate::mechanics::{
     Column, Displaced, Edge, Hinge, Momentum, MovingBody, MovingForce, Pose, Row, RowError, Sway,
     Twist, load_multiplier,
 };
-
-/// Floor on a wall that holds its top sideways, and rises with it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct HeldTop {
-    /// Weight of the floor on the wall, in N, without inertia.
-    pub weight_n: f64,
-    /// Distance of the weight from the axis, to the right, in metres.
-    pub x_m: f64,
-}
 
 /// Reason why a column with a held top has no mechanism.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -448,7 +438,8 @@ impl HeldMechanism {
         let steps = (1_u32..).map(|step| f64::from(step) * STEP_RAD);
         let mut steps = steps.take_while(|q_rad| *q_rad < FRAC_PI_2);
         match steps.find(|q_rad| resists(*q_rad) != Some(true)) {
-            Some(q_rad) if resists(q_rad) == Some(false) => {
+            // Curves also need positions just before the start, which a hinge at the top has not.
+            Some(q_rad) if resists(q_rad) == Some(false) && self.bent(-1e-4 * q_rad).is_some() => {
                 let falls = |q_rad| resists(q_rad) == Some(false);
                 Ok(bisect(q_rad - STEP_RAD, q_rad, Width::Rounding, falls).1)
             }
