@@ -1,6 +1,8 @@
 //! Vertical bending of walls whose top is held: closed forms, linear programmes and virtual work that share nothing with the library.
 
-use archrock::mechanics::{Anchor, HeldMechanism, HeldTop, HeldTopError, PlacedLoad, Tie};
+use archrock::mechanics::{
+    Anchor, CapacityError, HeldMechanism, HeldTop, HeldTopError, PlacedLoad, Tie,
+};
 use archrock::{Column, Sway};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -569,4 +571,16 @@ fn displaced_walls_are_in_equilibrium_up_to_their_unstable_position() {
         }
     }
     assert!(compared > 200, "{compared}");
+}
+
+/// Without a floor the hinge would lie at the top, where the multiplier of the closed form is 2 t / H, and the upper body could not turn.
+#[test]
+fn an_almost_unloaded_wall_has_its_hinge_at_the_top() {
+    let found = HeldMechanism::new(&Wall::prism(3.0, 0.4, 1e-3, 0.1).column(), Sway::Left).unwrap();
+    assert!((found.acceleration_g / (2.0 * 0.4 / 3.0) - 1.0).abs() < 1e-3);
+    assert!(found.hinges_m()[1].y > 2.99);
+    assert_eq!(
+        found.end_rad(),
+        Err(HeldTopError::Locks(CapacityError::Locks(Sway::Left)))
+    );
 }

@@ -378,7 +378,7 @@ impl HeldMechanism {
         })
     }
 
-    /// Bodies from the lower one up, and forces without ties, with their virtual displacements in a displaced position.
+    /// Bodies from the lower one up, and forces, with their virtual displacements in a displaced position.
     fn moving(&self, bent: &BentWall) -> (Vec<MovingBody>, Vec<MovingForce>) {
         let real = |at_m: Vector2<f64>| self.sway.seen(at_m);
         let displacement = |body: usize, at_m: Vector2<f64>| {
