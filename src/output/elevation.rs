@@ -7,8 +7,8 @@ use super::scene::{Piece, Scene};
 use super::{
     Anchor, Drawing, Figure, Frame, PartHeight, Sheet, Stroke, TEXT_PX, Text, color, text_px,
 };
-use crate::mechanics::BodyPoint;
-use crate::scenario::{Dimension, DimensionSide, Language, metres};
+use crate::mechanics::{BodyPoint, HeldMechanism, Sides};
+use crate::scenario::{Dimension, DimensionSide, Language, Structure, metres};
 use crate::{OpenHinge, Pose, Sway};
 
 /// Colour of blocks.
@@ -145,6 +145,59 @@ pub(crate) fn draw_hinges(
     sheet.gap(10.0);
     sheet.finish()
 }
+
+/// Draws a wall whose top is held, bent by a push to the right and to the left, and marks on its hinges.
+pub(crate) fn draw_bent(
+    figure: Figure,
+    title: &str,
+    structure: &Structure,
+    mechanisms: &Sides<HeldMechanism>,
+    spots: &[Spot],
+) -> String {
+    let mut sheet = Sheet::new(figure, title);
+    sheet.gap(ARROW_PX + 38.0);
+    let [low_m, high_m] = Scene::new(structure).frame_m();
+    let size_m = high_m - low_m;
+    let most_px = 0.4 * figure.width_px / size_m.x * size_m.y;
+    let height = PartHeight::Structure(figure.height_px(460.0), most_px);
+    sheet.part(height, |drawing, part| {
+        for ((sway, held), first) in mechanisms.iter().zip([0, 2]) {
+            let scene = Scene::of_row(&held.row, structure);
+            let middle = figure.width_px * (0.5 - 0.24 * sway.sign());
+            let place = SheetTransform::over(scene.frame_m(), middle, part);
+            let bent = held.displaced(held.unstable_rad().map_or(0.0, |end_rad| 0.25 * end_rad));
+            let pose = |drum| {
+                held.body_of(drum)
+                    .map_or(Pose::UNDEFORMED, |body| bent.poses[body])
+            };
+            let poses: Vec<Pose> = (0..held.row.blocks.len()).map(pose).collect();
+            let view = View::new(&scene, place, &poses, &[]);
+            view.draw_built(drawing, "built");
+            supports(drawing, &place, &scene);
+            view.draw_blocks(drawing, |drum, _| match held.body_of(drum) {
+                Some(body) => (format!("body {}", body + 1), BODIES[body]),
+                None => ("still".to_owned(), STONE),
+            });
+            view.draw_ties(drawing);
+            view.draw_loads(drawing, Some(part.top - 24.0), true);
+            for (hinge_m, spot) in bent.hinges_m.iter().zip(first..) {
+                drawing.circle("hinge", place.px(*hinge_m), 5.0, HINGE);
+                if let Some(spot) = spots.get(spot) {
+                    drawing.symbol(place.px(*hinge_m), &spot.symbol());
+                }
+            }
+            let below = Vector2::new(middle, part.top + part.height + 28.0);
+            let push = format!("push to the {}", sway.name());
+            drawing.label(below, Anchor::Middle, 0.0, push);
+        }
+    });
+    sheet.caption(46.0, BENT);
+    sheet.gap(10.0);
+    sheet.finish()
+}
+
+/// Text below a wall whose top is held.
+const BENT: &str = "a quarter of the way to the unstable equilibrium; circles: hinges; dashed: at rest; the top stays on its vertical line";
 
 /// A structure on a sheet, with its bodies at an instant.
 pub(crate) struct View<'a> {

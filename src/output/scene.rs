@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use crate::mechanics::masonry::FillColumn;
 use crate::mechanics::{Anchor, BodyPoint, Edge, Parts, PlacedLoad, Tie};
 use crate::mechanics::{Outline, StructureSection};
-use crate::scenario::{Dimension, Structure, forces_in_words, load_in_words};
+use crate::scenario::{Dimension, Structure, forces_in_words, load_in_words, metres};
 use crate::{Hinge, OpenHinge, Pose, Row, Sample, Sway};
 
 /// A structure to be drawn, undeformed.
@@ -28,6 +28,8 @@ pub struct Scene {
     loads: Vec<((usize, Vector2<f64>), PlacedLoad)>,
     /// Outline of the wall behind a column, in metres.
     wall_m: Option<[Vector2<f64>; 4]>,
+    /// Floor that holds the top: the point of its weight in metres, and its weight in words.
+    floor: Option<(Vector2<f64>, String)>,
     /// The dimensions of the structure.
     pub dimensions: Vec<Dimension>,
 }
@@ -115,6 +117,11 @@ impl Scene {
             fill_m: carried.fill_m,
             loads: loads.collect(),
             wall_m: structure.wall_outline_m(),
+            floor: structure.held_column().and_then(|column| {
+                let (top, height_m) = (column.top?, column.height_m);
+                let words = format!("floor {} kN", metres(1e-3 * top.weight_n));
+                Some((Vector2::new(top.x_m, height_m), words))
+            }),
             dimensions: structure.dimensions(),
         }
     }
@@ -215,7 +222,17 @@ impl Scene {
                 label,
             })
         });
-        loads.collect()
+        let floor = self.floor.iter().map(|(at_m, words)| LoadArrow {
+            at: BodyPoint {
+                body: self.body_of(self.pieces(&[]).len() - 1, hinges),
+                at_m: *at_m,
+            },
+            sideways: 0.0,
+            width_m: 0.0,
+            is_beside: false,
+            label: words.clone(),
+        });
+        loads.chain(floor).collect()
     }
 
     /// Returns dimensions and loads in words, for pictures without space to draw them; may be empty.
@@ -485,7 +502,7 @@ pub const FARTHEST: f64 = 1.5;
 pub(super) fn sections_rad(hinges: &[OpenHinge]) -> Vec<f64> {
     let angles = hinges.iter().filter_map(|open| match open.hinge {
         Hinge::Section { angle_rad, .. } => Some(angle_rad),
-        Hinge::Toe(_) | Hinge::Joint { .. } => None,
+        Hinge::Toe(_) | Hinge::Joint { .. } | Hinge::Face { .. } => None,
     });
     angles.collect()
 }

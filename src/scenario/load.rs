@@ -121,7 +121,7 @@ pub(super) fn loaded_column(
         }
         error => why_not(table, &error),
     })?;
-    if has_joints {
+    if has_joints && column.top.is_none() {
         let held = column.wall_behind_drums().map(drop);
         held.map_err(|error| wrong_wall(table, &error))?;
         let row = column.row().map_err(|error| error.to_string());

@@ -36,6 +36,7 @@ mod files;
 mod free_hinges;
 mod given;
 mod ground;
+mod held_top;
 mod impact;
 mod initial;
 mod input_file;
@@ -323,7 +324,8 @@ impl Scenario {
         let simulated = simulation.as_ref().ok();
         let gravity_m_s2 = simulated.map(|it| it.gravity_m_s2);
         let lands = kind.has_joints && !kind.has_stiffness && !options.statics;
-        let built = Structure::read(table, (kind.has_joints, lands, unproved), gravity_m_s2);
+        let reading = (kind.has_joints, lands, unproved, motion.moves);
+        let built = Structure::read(table, reading, gravity_m_s2);
         let structure = built.as_ref().ok().map(|(structure, _)| structure);
         let known = (known, gravity_m_s2, options.statics);
         let ground = GroundInput::read(table, known, options.statics);

@@ -102,6 +102,8 @@ fn needs_joints(table: &Table<'_>) -> bool {
 /// The tables of a scenario that concern its model of motion.
 pub(super) struct Tables {
     pub(super) kind: &'static ModelKind,
+    /// True unless only statics follow, and no model with joints has a table.
+    pub(super) moves: bool,
     /// True if the user chose the model, so that tables of other models are ignored.
     is_set: bool,
     /// Options of the models with joints that have a table.
@@ -130,6 +132,7 @@ impl Tables {
         let rows = (statics && needs_joints(table)).then_some(&FREE_HINGES);
         Self {
             kind: set.or(given).or(rows).unwrap_or(&FOUR_LINKS),
+            moves: !statics || given.is_some(),
             is_set: set.is_some(),
             options: options.map(|options| options.into_iter().flatten().collect()),
             supports,

@@ -299,6 +299,9 @@ pub(super) fn tied_column(
     let column = column
         .with_ties(ties, gravity_m_s2)
         .map_err(|(index, error)| table.reject_element("tie", index, error))?;
+    if column.top.is_some() {
+        return Ok(column);
+    }
     let row = column.row().map_err(|error| error.to_string());
     let falls = row
         .and_then(|row| collapse_mechanism(&row).map_err(|error| error.to_string()))

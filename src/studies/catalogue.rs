@@ -247,15 +247,19 @@ pub const SPREAD: StudyKind = StudyKind {
     })
 };
 /// The check of the first mechanism by the Circolare 7/2019.
-pub const VERIFY: StudyKind = StudyKind::whole("verify", &verify::FILES, |scenario, _, _| {
-    scenario.check_as_built().map_err(StudyError::Scenario)?;
-    if scenario.right_foot.is_some() {
-        let message = "`verify` applies one ground motion to both feet: leave [ground.right] out";
-        return Err(StudyError::scenario(message));
-    }
-    let check = verify::verify(scenario).map_err(StudyError::scenario)?;
-    Ok(verify::report(scenario, &check)?)
-});
+pub const VERIFY: StudyKind = StudyKind {
+    needs_motion: false,
+    ..StudyKind::whole("verify", &verify::FILES, |scenario, _, _| {
+        scenario.check_as_built().map_err(StudyError::Scenario)?;
+        if scenario.right_foot.is_some() {
+            let message =
+                "`verify` applies one ground motion to both feet: leave [ground.right] out";
+            return Err(StudyError::scenario(message));
+        }
+        let check = verify::verify(scenario).map_err(StudyError::scenario)?;
+        Ok(verify::report(scenario, &check)?)
+    })
+};
 /// Endings and courses of histories for samples of the uncertain numbers.
 pub const UNCERTAIN: StudyKind = StudyKind {
     has_rotations: true,

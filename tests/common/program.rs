@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::{Arc, Mutex, OnceLock};
 
+use archrock::Scenario;
+use archrock::scenario::{ReadOptions, Source};
+
 /// The program with these arguments, in a folder, without a keyboard.
 pub fn command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_archrock"));
@@ -164,6 +167,20 @@ pub fn scenario_files() -> Vec<PathBuf> {
     let names = names(&scenarios()).into_iter();
     let files = names.filter(|name| name.ends_with(".toml"));
     files.map(|name| scenarios().join(name)).collect()
+}
+
+/// Reads a scenario of the repository; some are for statics alone.
+pub fn example(path: &Path) -> Scenario {
+    let options = ReadOptions {
+        statics: is_for_statics(path),
+        ..ReadOptions::default()
+    };
+    Scenario::of(&Source::of_file(path).unwrap(), &options).unwrap()
+}
+
+/// True for a scenario that has no model of motion.
+pub fn is_for_statics(path: &Path) -> bool {
+    path.ends_with("vertical-bending.toml")
 }
 
 /// The commands that a page of the documentation shows, each with the lines of its output that are shown.

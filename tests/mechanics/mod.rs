@@ -3,6 +3,7 @@
 mod certificate;
 mod elastic_joint;
 mod four_link_rows;
+mod held_top;
 mod impact;
 mod impulse_line;
 mod live_loads;

@@ -115,7 +115,7 @@ impl Recorder for Closures {
             .iter()
             .filter_map(|hinge| match *hinge {
                 Hinge::Joint { joint, edge } => Some((joint, edge?)),
-                Hinge::Section { .. } | Hinge::Toe(_) => None,
+                Hinge::Section { .. } | Hinge::Toe(_) | Hinge::Face { .. } => None,
             })
             .collect();
         let shut = event.rotations_rad.iter().all(|angle| *angle == 0.0);

@@ -95,7 +95,7 @@ fn largest(rotations_rad: &[f64]) -> f64 {
 fn joint(hinge: Hinge) -> usize {
     match hinge {
         Hinge::Joint { joint, .. } => joint,
-        Hinge::Section { .. } | Hinge::Toe(_) => panic!("a row has joints"),
+        Hinge::Section { .. } | Hinge::Toe(_) | Hinge::Face { .. } => panic!("a row has joints"),
     }
 }
 

@@ -144,7 +144,7 @@ impl<'a> ThreeHinges<'a> {
 fn open_joints(sample: &Sample) -> Vec<usize> {
     let joint = |hinge: Hinge| match hinge {
         Hinge::Joint { joint, .. } => joint,
-        Hinge::Section { .. } | Hinge::Toe(_) => panic!("a row has joints"),
+        Hinge::Section { .. } | Hinge::Toe(_) | Hinge::Face { .. } => panic!("a row has joints"),
     };
     sample.hinges.iter().map(|open| joint(open.hinge)).collect()
 }

@@ -121,7 +121,7 @@ fn assert_page_is_true(page: &str, commands: usize) {
 
 #[test]
 fn commands_print_the_output_shown_in_the_recipes() {
-    assert_page_is_true("docs/recipes.md", 28);
+    assert_page_is_true("docs/recipes.md", 30);
 }
 
 #[test]

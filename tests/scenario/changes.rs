@@ -8,6 +8,7 @@ use archrock::scenario::{Assignment, MODELS, ReadOptions, Scenario, Source};
 use serde_json::Value;
 
 use crate::common::documents::repository;
+use crate::common::program::is_for_statics;
 
 /// Tables whose numbers describe studies.
 const STUDIES: [&str; 5] = ["map", "suite", "uncertain", "demand", "verify"];
@@ -113,6 +114,7 @@ impl Text {
         let set: Vec<Assignment> = set.iter().map(|one| one.parse().unwrap()).collect();
         let options = ReadOptions {
             set: &set,
+            statics: is_for_statics(Path::new(&self.name)),
             ..ReadOptions::default()
         };
         let read = Scenario::of(&Source::of_text(&self.text, &self.name), &options);

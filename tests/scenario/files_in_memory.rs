@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::common::program::{example, is_for_statics};
 use archrock::scenario::{FileContents, Ground, ReadOptions, Scenario, ScenarioErrors, Source};
 
 /// Reads all files of a folder and of the folders in it, with their names relative to `base`.
@@ -21,7 +22,6 @@ fn contents(folder: &Path, base: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 
 #[test]
 fn every_example_is_the_same_with_its_files_in_memory() {
-    let options = ReadOptions::default();
     let mut records = 0;
     for folder in ["scenarios", "scenarios/recipes"] {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
@@ -31,7 +31,11 @@ fn every_example_is_the_same_with_its_files_in_memory() {
             is_inside && name.extension().is_some_and(|ending| ending == "toml")
         });
         for (name, text) in texts {
-            let on_disk = Scenario::read(&folder.join(name)).unwrap();
+            let on_disk = example(&folder.join(name));
+            let options = ReadOptions {
+                statics: is_for_statics(name),
+                ..ReadOptions::default()
+            };
             let text = std::str::from_utf8(text).unwrap();
             let source = Source::of_text(text, &name.display().to_string());
             let source = source.with_files(files.clone());

@@ -8,7 +8,9 @@ use std::path::Path;
 use archrock::scenario::{Scenario, Unlikely, Varied};
 use serde_json::Value;
 
-use crate::common::program::{archrock, refusal, scenario_files, scenarios, stderr, stdout};
+use crate::common::program::{
+    archrock, example, refusal, scenario_files, scenarios, stderr, stdout,
+};
 
 const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\ndensity_kg_m3 = 2500\n";
 const PULSE: &str = "[ground.half_sine]\namplitude_g = 0.3\nduration_s = 0.5\n";
@@ -221,7 +223,7 @@ fn scenarios_of_the_repository_cause_no_warnings() {
     let files: Vec<_> = scenario_files().into_iter().chain(others).collect();
     assert!(files.len() > 25);
     for file in files {
-        let scenario = Scenario::read(&file).unwrap();
+        let scenario = example(&file);
         assert_eq!(
             scenario.unlikely_in(&Varied::default()),
             [],

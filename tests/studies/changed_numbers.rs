@@ -190,6 +190,8 @@ fn all_ways_to_change_a_number_compute_one_history() {
     }
     assert!(verdicts > 20, "{verdicts}");
     let all = tables_with_numbers();
+    // A held top has no histories.
+    tables.insert("column.top".to_owned());
     let missing: Vec<_> = all.difference(&tables).collect();
     assert!(missing.is_empty(), "{missing:?}");
 }

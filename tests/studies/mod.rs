@@ -8,6 +8,7 @@ mod elastic_joints;
 mod fragility;
 mod free_hinges;
 mod friction_demand;
+mod held_top;
 mod impact;
 pub mod limit;
 mod loads;

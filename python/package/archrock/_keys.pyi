@@ -619,6 +619,8 @@ class ImpactImpactsBeforeHingesKeys:
     angle_deg: float
     edge: str | None
     joint: int
+    height_m: float
+    side: str
 
 class ImpactImpactsBeforeHinges(Summary, ImpactImpactsBeforeHingesKeys):
     pass
@@ -723,6 +725,7 @@ class LimitKeys:
     wall_behind: str | None
     hinges: list[LimitHinges] | None
     ties: LimitTies | None
+    top_reaction_n: BySide[float] | None
     four_links: LimitFourLinks | None
     friction: LimitFriction | None
     live: LimitLive | None
@@ -750,6 +753,7 @@ class LimitResult:
     wall_behind: str | None
     hinges: list[LimitHinges] | None
     ties: LimitTies | None
+    top_reaction_n: BySide[float] | None
     four_links: LimitFourLinks | None
     friction: LimitFriction | None
     live: LimitLive | None
@@ -764,6 +768,8 @@ class LimitMechanismKeys:
     x_m: float
     y_m: float
     angle_deg: float
+    height_m: float
+    side: str
 
 class LimitMechanism(Summary, LimitMechanismKeys):
     pass
@@ -795,6 +801,8 @@ class LimitToTheLeftHingesKeys:
     angle_deg: float
     edge: str | None
     joint: int
+    height_m: float
+    side: str
 
 class LimitToTheLeftHinges(Summary, LimitToTheLeftHingesKeys):
     pass
@@ -2089,6 +2097,7 @@ class VerifyMechanismsKeys:
     positions: list[VerifyMechanismsPositions]
     no_curve: Any | None
     sliding: VerifyMechanismsSliding | None
+    top_reaction_kn: float | None
 
 class VerifyMechanisms(Summary, VerifyMechanismsKeys):
     pass
@@ -2097,6 +2106,8 @@ class VerifyMechanismsHingesKeys:
     angle_deg: float
     edge: str | None
     joint: int
+    height_m: float
+    side: str
     x_m: float
     y_m: float
 
@@ -2459,6 +2470,8 @@ class EventHingesKeys:
     angle_deg: float
     edge: str | None
     joint: int
+    height_m: float
+    side: str
 
 class EventHinges(Summary, EventHingesKeys):
     pass

@@ -235,6 +235,8 @@ class Column(_OneTable):
             ``{"side": "left"}``, perhaps with ``height_m`` and ``restitution`` (ratio of rates), which one block before a lower wall
             or with moving loads needs; drums then need elastic joints.
             ``None``: it stands free.
+        top: table ``[column.top]``: a floor that holds the top sideways and rises with it, such as ``{"weight_n": 25e3}``, perhaps
+            with ``x_m``; for ``limit``, ``capacity`` and ``verify``.
         load: tables ``[[load]]``: roofs, floors and thrusts, such as ``[{"mass_kg": 1500.0, "x_m": -0.15}]``, perhaps with
             ``height_m``, ``moves`` and ``thrust_n``.
 
@@ -254,6 +256,7 @@ class Column(_OneTable):
     depth_m: float
     density_kg_m3: float
     back: dict[str, Any]
+    top: dict[str, Any]
 
     def __init__(
         self,
@@ -267,6 +270,7 @@ class Column(_OneTable):
         depth_m: float | None = None,
         density_kg_m3: float | None = None,
         back: Mapping[str, Any] | None = None,
+        top: Mapping[str, Any] | None = None,
         load: Sequence[Mapping[str, Any]] | None = None,
     ) -> None:
         column = {
@@ -279,6 +283,7 @@ class Column(_OneTable):
             "depth_m": depth_m,
             "density_kg_m3": density_kg_m3,
             "back": back,
+            "top": top,
         }
         super().__init__(column=column, **({"load": load} if load else {}))
 

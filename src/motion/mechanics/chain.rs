@@ -135,6 +135,13 @@ pub enum Hinge {
         /// Edge about which the joint opens; `None` if it opens at both edges.
         edge: Option<Edge>,
     },
+    /// Hinge on a face of a wall that is not cut into drums.
+    Face {
+        /// Height above the base, in metres.
+        height_m: f64,
+        /// The face.
+        side: Sway,
+    },
 }
 
 fn serialize_degrees<S: Serializer>(angle_rad: &f64, serializer: S) -> Result<S::Ok, S::Error> {

@@ -35,8 +35,8 @@ use crate::argument::{ArgumentError, plain, require, require_within};
 use crate::mechanics::four_link::resultant::SectionResultant;
 use crate::mechanics::masonry::LoadOutlines;
 use crate::mechanics::{
-    BackWall, Block, Demand, FourLinkError, Hinge, ImpactLaw, ImpactModel, Link, MechanismChain,
-    NoWallRatio, PlacedLoad, Row, RowError, Sides, Sway, Tie,
+    BackWall, Block, Demand, FourLinkError, HeldTop, Hinge, ImpactLaw, ImpactModel, Link,
+    MechanismChain, NoWallRatio, PlacedLoad, Row, RowError, Sides, Sway, Tie,
 };
 
 /// A free-standing column: a rectangular block on rigid ground, which does not slide.
@@ -67,6 +67,9 @@ pub struct Column {
     /// Wall behind the column; `None` if it stands free. [`Column::row`] has no wall.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub back: Option<BackWall>,
+    /// Floor that holds its top sideways; `None` if its top is free. [`Column::row`] and [`RockingColumn`] have a free top.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub top: Option<HeldTop>,
     /// Ties of the column.
     #[serde(skip)]
     pub ties: Vec<Tie>,
@@ -75,7 +78,7 @@ pub struct Column {
     pub loads: Vec<PlacedLoad>,
     /// Gravity for which ties and loads were given, in m/s2.
     #[serde(skip)]
-    gravity_m_s2: f64,
+    pub(super) gravity_m_s2: f64,
 }
 
 /// Reason why a column cannot carry its loads.
@@ -109,6 +112,7 @@ impl Column {
             given: None,
             pedestal: false,
             back: None,
+            top: None,
             ties: Vec::new(),
             loads: Vec::new(),
             gravity_m_s2: GRAVITY_M_S2,
@@ -210,6 +214,57 @@ impl Column {
         Ok(self)
     }
 
+    /// This column with a floor that holds its top sideways, under this gravity; its drums come before.
+    ///
+    /// # Errors
+    /// When the weight is outside 1e-9 to 1e12 N or beyond the top, or the column has one drum and a taper, or a wall stands behind it.
+    pub fn with_top(mut self, top: HeldTop, gravity_m_s2: f64) -> Result<Self, ArgumentError> {
+        require_within("weight_n", top.weight_n, MAGNITUDE)?;
+        let (half_m, base_m) = (0.5 * self.top_width_m(), self.width_m);
+        require_within("x_m", top.x_m, -half_m..=half_m)?;
+        let fits = !self.is_one_block() || 2.0 * half_m == base_m;
+        let allowed = "that of the base without drums: give drums";
+        require(fits, "top_width_m", 2.0 * half_m, allowed)?;
+        let no_wall = "left out with a floor that holds the top of the column";
+        require(self.back.is_none(), "back", 1.0, no_wall)?;
+        (self.top, self.gravity_m_s2) = (Some(top), gravity_m_s2);
+        Ok(self)
+    }
+
+    /// This column cut at heights in metres, from the lower one up; ends do not count. Its ties go to the drums at their heights.
+    pub(super) fn cut_at(&self, heights_m: &[f64]) -> Self {
+        let mut from_m = 0.0;
+        let ends_m = heights_m.iter().filter(|height_m| **height_m > 0.0);
+        let drums_m = ends_m.chain([&self.height_m]).map(|end_m| {
+            let height_m = end_m - from_m;
+            from_m = *end_m;
+            height_m
+        });
+        let mut cut = self.clone();
+        cut.drum_heights_m = Some(drums_m.collect());
+        for tie in 0..cut.ties.len() {
+            for end in 0..2 {
+                let anchor = cut.ties[tie].ends[end];
+                let drum = anchor.block.map(|_| cut.drum_at(anchor.at_m.y));
+                cut.ties[tie].ends[end].block = drum;
+            }
+        }
+        cut
+    }
+
+    /// Heights in metres between which the loads above a section vary smoothly: base, loads and ties, top.
+    pub(super) fn heights_of_forces_m(&self) -> Vec<f64> {
+        let loads_m = self.placed_loads().map(|(_, at_m)| at_m.y);
+        let ends = self.ties.iter().flat_map(|tie| &tie.ends);
+        let ties_m = ends.filter_map(|end| end.block.and(Some(end.at_m.y)));
+        let inside = |height_m: &f64| 0.0 < *height_m && *height_m < self.height_m;
+        let mut heights_m: Vec<f64> = loads_m.chain(ties_m).filter(inside).collect();
+        heights_m.extend([0.0, self.height_m]);
+        heights_m.sort_by(f64::total_cmp);
+        heights_m.dedup();
+        heights_m
+    }
+
     /// Checks that no push turns the column over the top of the wall behind it.
     fn check_wall_height(&self) -> Result<(), ArgumentError> {
         let Some((_, height_m)) = self.wall() else {
@@ -244,7 +299,8 @@ impl Column {
         };
         let fits = loaded.check_wall_height();
         fits.map_err(ColumnLoadError::Wall)?;
-        match loaded.overturns_to().filter(|_| loaded.is_one_prism()) {
+        let is_free = loaded.is_one_prism() && loaded.top.is_none();
+        match loaded.overturns_to().filter(|_| is_free) {
             Some(sway) => Err(ColumnLoadError::Overturns(sway)),
             None => Ok(loaded),
         }
@@ -471,9 +527,14 @@ impl Column {
         drums.unwrap_or_else(|| vec![self.height_m])
     }
 
+    /// Whether it is not cut into drums.
+    pub(super) fn is_one_block(&self) -> bool {
+        self.drum_heights_m().len() == 1
+    }
+
     /// Whether it is one prismatic block without ties, as in Housner's model.
     pub fn is_one_prism(&self) -> bool {
-        let prism = self.drum_heights_m().len() == 1 && self.top_width_m() == self.width_m;
+        let prism = self.is_one_block() && self.top_width_m() == self.width_m;
         prism && self.ties.is_empty()
     }
 
@@ -539,6 +600,9 @@ impl RockingColumn {
     pub fn new(column: &Column, law: impl Into<ImpactLaw>) -> Result<Self, FourLinkError> {
         let law = law.into();
         law.check()?;
+        if column.top.is_some() {
+            return Err(FourLinkError::HeldTop);
+        }
         let (drums, top_m) = (column.drum_heights_m().len(), column.top_width_m());
         let one = "1 in Housner's model: a column of drums needs free hinges";
         require(drums <= 1, "drums", drums as f64, one)?;

@@ -84,6 +84,12 @@ pub enum FourLinkError {
     /// The stability of the row was not determined.
     #[error(transparent)]
     Contact(#[from] ContactError),
+    /// The top of the column is held.
+    #[error(
+        "holds the top of a column, for which there is no model of motion, because the impact of its two bodies is not computed: run `archrock limit`, \
+         `capacity` or `verify`, without [free_hinges] and [elastic_joints], or leave [column.top] out"
+    )]
+    HeldTop,
     /// The restitution coefficient is out of range.
     #[error(transparent)]
     Argument(#[from] ArgumentError),

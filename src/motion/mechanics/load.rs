@@ -40,6 +40,15 @@ pub struct PlacedLoad {
     pub thrust_n: f64,
 }
 
+/// Floor on a wall that holds its top sideways, and rises with it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct HeldTop {
+    /// Weight of the floor on the wall, in N, without inertia.
+    pub weight_n: f64,
+    /// Distance of the weight from the axis, to the right, in metres.
+    pub x_m: f64,
+}
+
 fn is_zero(x: &f64) -> bool {
     *x == 0.0
 }

@@ -1,5 +1,7 @@
 //! Directions in which a structure sways. Everything is computed in a frame in which the sway goes right; a sway to the left is reflected.
 
+use nalgebra::Vector2;
+
 use crate::mechanics::Profile;
 
 named! {
@@ -38,6 +40,11 @@ impl Sway {
             Self::Right => 1.0,
             Self::Left => -1.0,
         }
+    }
+
+    /// Converts a vector from the frame in which this sway goes right to the frame of the ground, or back.
+    pub fn seen(self, vector: Vector2<f64>) -> Vector2<f64> {
+        Vector2::new(self.sign() * vector.x, vector.y)
     }
 
     /// Converts a section from the frame in which this sway goes right to the frame of the ground, or back. A section is an angle in radians from the

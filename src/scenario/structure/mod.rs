@@ -12,6 +12,7 @@ use std::f64::consts::FRAC_PI_2;
 use thiserror::Error;
 
 use super::back_wall;
+use super::held_top;
 use super::load::{NO_CONSTANT_FORCES, loaded_column};
 use super::masonry::{self, Additions};
 use super::prelude::*;
@@ -20,7 +21,7 @@ use super::tie::{self, TieTable};
 use crate::argument::rounded_up;
 use crate::mechanics::four_link::least_thickness_ratio;
 use crate::mechanics::masonry::{CircularArch, LoadOutlines};
-use crate::mechanics::{DENSITY_KG_M3, DEPTH_M, GivenBody, MAX_BLOCKS};
+use crate::mechanics::{DENSITY_KG_M3, DEPTH_M, GivenBody, HeldTop, MAX_BLOCKS};
 use crate::mechanics::{LimitError, MasonryShape, Parts, PlacedLoad, RowError, Supports, Tie};
 use crate::{
     Arch, BackWall, Column, FourLinkError, FourLinks, FreeHinges, ImpactLaw, ImpactModel, Masonry,
@@ -72,10 +73,11 @@ pub enum ModelError {
 }
 
 impl Structure {
-    /// Reads the structure with its ties, for a model of motion with joints or without. `lands` is true if its blocks are rigid and land on each other.
+    /// Reads the structure with its ties, for a model of motion with joints or without. `lands` is true if its blocks are rigid and land on each other,
+    /// `moves` if a model of motion follows.
     pub(super) fn read(
         table: &mut Table<'_>,
-        (has_joints, lands, unproved): (bool, bool, bool),
+        (has_joints, lands, unproved, moves): (bool, bool, bool, bool),
         gravity_m_s2: Option<f64>,
     ) -> ReadResult<(Self, Vec<TieTable>)> {
         let beside = Additions::read(table);
@@ -89,17 +91,18 @@ impl Structure {
         let [pointed, elliptic, basket, blocks] = masonry::SHAPES;
         let tables = ["arch", "column", BODY, pointed, elliptic, basket, blocks];
         table.apply_relations(&[OneOf(&tables, None)])?;
-        let body = body.map(|body| (body, None));
+        let body = body.map(|body| (body, (None, None)));
         let column = column.or(body);
-        let column = column.map(|(column, back)| StructureTable::Column(column, back));
+        let column = column.map(|(column, sides)| StructureTable::Column(column, sides));
         let read = arch.or(column).or(shape).ok_or(FaultRecorded)?;
         let (beside, gravity_m_s2) = (beside?, gravity_m_s2.ok_or(FaultRecorded)?);
         let ties = beside.ties.clone();
         let structure = match read {
             StructureTable::Arch(arch) => Self::Arch(arch),
-            StructureTable::Column(column, back) if beside.fits_column() => {
+            StructureTable::Column(column, (back, top)) if beside.fits_column() => {
                 let column =
                     back_wall::place_before_wall(table, column, back, (has_joints, lands))?;
+                let column = held_top::hold(table, column, top, gravity_m_s2)?;
                 let has_joints = has_joints || !ties.is_empty();
                 let by = (has_joints, gravity_m_s2);
                 let column = loaded_column(table, &beside.loads, column, by)?;
@@ -113,7 +116,9 @@ impl Structure {
                     "tie",
                     "goes with an arch or a [column], not with a [body] by its numbers",
                 )?;
-                Self::Column(tie::tied_column(table, &ties, column, gravity_m_s2)?)
+                let column = tie::tied_column(table, &ties, column, gravity_m_s2)?;
+                held_top::check(table, &column, moves)?;
+                Self::Column(column)
             }
             StructureTable::Column(..) => {
                 return Err(beside.reject_all(table, "applies to an arch, not to a column"));
@@ -224,7 +229,9 @@ impl Structure {
     pub fn is_symmetric(&self) -> bool {
         match self {
             Self::Arch(_) => true,
-            Self::Column(column) => column.loads.is_empty() && column.given.is_none(),
+            Self::Column(column) => {
+                column.loads.is_empty() && column.given.is_none() && column.top.is_none()
+            }
             Self::Masonry(_) => false,
         }
     }
@@ -243,6 +250,11 @@ impl Structure {
             Self::Column(column) => Some(column),
             Self::Arch(_) | Self::Masonry(_) => None,
         }
+    }
+
+    /// Column whose top is held by a floor; `None` for other structures.
+    pub(crate) fn held_column(&self) -> Option<&Column> {
+        self.column().filter(|column| column.top.is_some())
     }
 
     /// Length out of plane in m and the density in kg/m3; if densities differ, the first.
@@ -307,10 +319,13 @@ fn four_link_row<L: Into<ImpactLaw>>(
     Ok(FourLinks::of_row(&masonry.row, law)?.with_depth_m(depth_m)?)
 }
 
+/// Wall behind a column and floor that holds its top.
+type BackAndTop = (Option<BackWall>, Option<HeldTop>);
+
 /// The contents of a table that describes a structure.
 enum StructureTable {
     Arch(Arch),
-    Column(Column, Option<BackWall>),
+    Column(Column, BackAndTop),
     Shape(MasonryShape),
 }
 
@@ -436,8 +451,8 @@ const DRUMS: Count = Count(1..=MAX_BLOCKS, "each is a block");
 /// Keys of `[column]` that need a model with joints.
 pub(super) const DRUM_KEYS: [&str; 3] = ["drums", "drum_heights_m", "top_width_m"];
 
-/// Reads `[column]` and the wall behind it. Drums and a taper need a model with joints.
-fn read_column(table: &mut Table<'_>, has_joints: bool) -> ReadResult<(Column, Option<BackWall>)> {
+/// Reads `[column]`, the wall behind it and the floor on it. Drums and a taper need a model with joints, unless a floor holds the top.
+fn read_column(table: &mut Table<'_>, has_joints: bool) -> ReadResult<(Column, BackAndTop)> {
     let height_m = table.read_required("height_m", &MAGNITUDE);
     let width_m = table.read_required("width_m", &MAGNITUDE);
     let drums = table.optional("drums", &DRUMS);
@@ -447,11 +462,16 @@ fn read_column(table: &mut Table<'_>, has_joints: bool) -> ReadResult<(Column, O
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, DENSITY_KG_M3);
     let pedestal = table.or("pedestal", &switch(), false);
     let back = table.table("back", back_wall::read);
-    if !has_joints && let Some(key) = DRUM_KEYS.into_iter().find(|key| table.has_key(key)) {
+    let top = table.table("top", held_top::read);
+    let needs_model = !has_joints && !table.has_key("top");
+    if needs_model && let Some(key) = DRUM_KEYS.into_iter().find(|key| table.has_key(key)) {
         let wrong = "needs a table [free_hinges] or [elastic_joints]: Housner's model is a single prismatic block";
         table.reject(key, wrong);
     }
-    table.check_relations(&[AtMostOne(&["drums", "drum_heights_m"], GIVE_ONE)])?;
+    table.check_relations(&[
+        AtMostOne(&["drums", "drum_heights_m"], GIVE_ONE),
+        Excludes("top", "back", held_top::NO_WALL),
+    ])?;
     let mut column = Column::new(height_m, width_m)
         .and_then(|column| column.with_depth_m(depth_m))
         .and_then(|column| column.with_density_kg_m3(density_kg_m3))
@@ -471,5 +491,5 @@ fn read_column(table: &mut Table<'_>, has_joints: bool) -> ReadResult<(Column, O
             .map_err(|error| format!("does not fit: {error}"));
         column = table.accept("drum_heights_m", drums)?;
     }
-    Ok((column, back))
+    Ok((column, (back, top)))
 }

@@ -98,6 +98,10 @@ fn column_words(column: &Column) -> Vec<String> {
         }
         None => vec![format!("column{}", wall.unwrap_or_default())],
     };
+    parts.extend(column.top.map(|top| {
+        let [weight_kn, x] = [1e-3 * top.weight_n, top.x_m].map(metres);
+        format!("top held sideways by a floor of {weight_kn} kN at x = {x} m")
+    }));
     parts.extend(column.placed_loads().map(|(load, at_m)| {
         let [x, y] = [at_m.x, at_m.y].map(metres);
         let load = load_in_words(load);

@@ -7,7 +7,10 @@ use thiserror::Error;
 
 pub use self::report::{CapacitySummary, FILES, report};
 use crate::mechanics::settling::{Held, HeldError};
-use crate::mechanics::{BodyPoint, Capacity, CapacityError, Control, Parts, RowError, Sides};
+use crate::mechanics::{
+    BodyPoint, Capacity, CapacityError, Control, HeldMechanism, HeldTopError, Parts, RowError,
+    Sides,
+};
 use crate::{FourLinkError, Hinge, MechanismModel, Row, Scenario, Structure, Sway};
 
 /// Reasons why a scenario has no capacity curves.
@@ -20,6 +23,9 @@ pub enum CapacityCurveError {
     /// The structure is not a row of blocks.
     #[error(transparent)]
     Row(#[from] RowError),
+    /// The column with a held top has no mechanism.
+    #[error(transparent)]
+    HeldTop(#[from] HeldTopError),
     /// The row does not move along one mechanism.
     #[error(transparent)]
     Held(#[from] HeldError),
@@ -42,6 +48,20 @@ pub fn capacity(
     point_m: Option<Vector2<f64>>,
 ) -> Result<Sides<Option<Capacity>>, CapacityCurveError> {
     let gravity_m_s2 = scenario.gravity_m_s2();
+    if let Some(column) = scenario.structure.held_column() {
+        let right = HeldMechanism::new(column, Sway::Right)?;
+        // The top does not move sideways: the default is the axis at the hinge.
+        let hinge_m = Vector2::new(0.0, right.hinges_m()[1].y);
+        return Sides::try_of(|sway| {
+            let held = HeldMechanism::new(column, sway)?;
+            let (row, end_rad) = (&held.row, held.end_rad()?);
+            let control = control(row, Some(point_m.unwrap_or(hinge_m)))?;
+            let displaced = |part| held.displaced(part * end_rad);
+            let (masses, control) = Bodies::of_held_top(&held).masses(row, control);
+            let capacity = Capacity::new(sway, displaced, &masses, control, gravity_m_s2)?;
+            Ok(Some(capacity))
+        });
+    }
     if let Some(row) = held_row(&scenario.structure)? {
         let control = control(&row, point_m)?;
         return Sides::try_of(|sway| {
@@ -115,7 +135,7 @@ impl Bodies {
             .map(|hinge| match hinge {
                 Hinge::Section { angle_rad, .. } => angle_rad,
                 Hinge::Joint { joint, .. } => joint as f64,
-                Hinge::Toe(_) => 0.0,
+                Hinge::Toe(_) | Hinge::Face { .. } => 0.0,
             });
         Self {
             hinges: hinges.collect(),
@@ -129,6 +149,14 @@ impl Bodies {
         Self {
             hinges: hinges.collect(),
             count: held.bodies(),
+        }
+    }
+
+    /// Bodies of a wall whose top is held.
+    pub(super) fn of_held_top(held: &HeldMechanism) -> Self {
+        Self {
+            hinges: held.pins.iter().map(|pin| pin.joint as f64).collect(),
+            count: held.pins.len(),
         }
     }
 

@@ -113,6 +113,7 @@ pub fn report(
 ) -> Result<Results, OutputError> {
     let masses = match held_row(&scenario.structure) {
         Ok(Some(row)) => row.parts_in_words(),
+        _ if scenario.structure.held_column().is_some() => "its two bodies".to_owned(),
         _ => scenario.structure.as_parts().parts_in_words(),
     };
     let summary = CapacitySummary {

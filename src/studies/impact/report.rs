@@ -486,7 +486,9 @@ impl ImpactSummary {
             Hinge::Section { angle_rad, edge } => {
                 format!("{:>10.5} {}", degrees(*angle_rad), self.initial(edge))
             }
-            Hinge::Toe(side) => format!("{:>12}", format!("{} toe", side.name())),
+            Hinge::Toe(side) | Hinge::Face { side, .. } => {
+                format!("{:>12}", format!("{} toe", side.name()))
+            }
             Hinge::Joint { joint, edge } => {
                 let edge = edge.map_or("", |edge| self.initial(&edge));
                 format!("{:>12}", format!("joint {joint} {edge}"))

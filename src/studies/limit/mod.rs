@@ -8,19 +8,21 @@ mod yielding;
 use self::live::live_limit;
 pub use self::live::{LiveAnswer, LiveLimit, VehiclePosition};
 pub(super) use self::page::{FILES, results};
-use self::report::open_joints;
 pub use self::report::{
     FourLinkAnswer, FourLinkSide, Friction, FrictionLimit, FrictionSide, LimitSummary, TieLimits,
     Ties, YieldingTies,
 };
+use self::report::{held_hinges, open_joints};
 use super::StudyError;
 use super::report::Warnings;
 use super::results::PrintedResult;
 use crate::mechanics::friction::{self, FrictionOnset};
 use crate::mechanics::stability::{is_straight, limit_with_yielding_ties, onset, onset_at};
-use crate::mechanics::{Follower, FrictionError, Movements, RowOnset, Sides, StabilityError};
+use crate::mechanics::{
+    Follower, FrictionError, HeldMechanism, Movements, RowOnset, Sides, StabilityError,
+};
 use crate::scenario::Varied;
-use crate::{FourLinkError, Row, RowModelError, Scenario, Sway};
+use crate::{FourLinkError, Row, RowModelError, Scenario, Structure, Sway};
 
 /// The reason why no push starts an arch in which limit analysis has no mechanism.
 const STRAIGHT: &str = "a straight line fits into it, along which any thrust may act";
@@ -54,6 +56,9 @@ fn summary(scenario: &Scenario) -> Result<LimitSummary, StudyError> {
     if let Some(movements) = scenario.motion.supports() {
         return compute_moved_row(scenario, &row()?, &movements, coefficient);
     }
+    if let Some(mechanisms) = held_mechanisms(&scenario.structure)? {
+        return Ok(summary_of_held_top(scenario, &mechanisms));
+    }
     let mut summary = match scenario.row().map_err(StudyError::scenario)? {
         Some(row) => compute_row(scenario, &row).map_err(StudyError::scenario)?,
         None => {
@@ -82,6 +87,32 @@ fn summary(scenario: &Scenario) -> Result<LimitSummary, StudyError> {
     summary.live = live;
     summary.warnings = Warnings::new(scenario.unlikely_in(&Varied::default()), []);
     Ok(summary)
+}
+
+/// Mechanisms of a column whose top is held; `None` for other structures.
+fn held_mechanisms(structure: &Structure) -> Result<Option<Sides<HeldMechanism>>, StudyError> {
+    let sides = structure
+        .held_column()
+        .map(|column| Sides::try_of(|sway| HeldMechanism::new(column, sway)));
+    sides.transpose().map_err(StudyError::scenario)
+}
+
+/// Summary of a column whose top is held.
+fn summary_of_held_top(scenario: &Scenario, mechanisms: &Sides<HeldMechanism>) -> LimitSummary {
+    let starts_g = mechanisms.map(|one| Some(one.acceleration_g));
+    let hinges = mechanisms.map(held_hinges);
+    let mut summary = LimitSummary::new(starts_g, hinges, scenario.gravity_m_s2());
+    summary.friction_demand = mechanisms.map(|one| Some(one.displaced(0.0).friction));
+    summary.top_reaction_n = Some(mechanisms.map(|one| one.reaction_n));
+    let bars = mechanisms.right.row.bars();
+    summary.ties = (!bars.is_empty()).then(|| Ties {
+        forces_at_rest_n: bars.iter().map(|tie| tie.prestress_n).collect(),
+        limits: None,
+        mechanism_without: None,
+    });
+    summary.tie_places = scenario.structure.tie_places();
+    summary.warnings = Warnings::new(scenario.unlikely_in(&Varied::default()), []);
+    summary
 }
 
 /// Coefficients of friction with which no joint of a row slides before it starts. `demand` computes that for a push. A coefficient that

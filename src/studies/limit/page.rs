@@ -1,8 +1,8 @@
 //! Files of limit analysis: the page, the picture and the summary.
 
-use super::summary;
+use super::{held_mechanisms, summary};
 use crate::argument::format_fixed;
-use crate::output::elevation::draw_hinges;
+use crate::output::elevation::{draw_bent, draw_hinges};
 use crate::output::page::{Spot, SpotKind};
 use crate::output::{Figure, Scene};
 use crate::studies::draw_limit;
@@ -35,13 +35,16 @@ pub fn results(scenario: &Scenario, figure: Figure) -> Result<Results, StudyErro
     if let Some(live) = &summary.live {
         return live_results(scenario, &summary, live, figure);
     }
+    let bent = held_mechanisms(&scenario.structure)?;
     let title = scenario.title.as_deref().unwrap_or("Limit analysis");
     let (mut hinges_m, mut cases) = (Vec::new(), PageCases::default());
     let text = CaseScenario::unchanged(cases.add_text(&scenario.to_json(), false));
     let case = || Some(text.clone());
     for (sway, hinges) in summary.mechanism.iter() {
         for (index, hinge) in hinges.iter().enumerate() {
-            let (at_m, words, push) = (hinge.position_m(&scene), hinge.words(&index), sway.name());
+            let of_bent = bent.as_ref().map(|bent| bent.get(sway).hinges_m()[index]);
+            let at_m = of_bent.unwrap_or_else(|| hinge.position_m(&scene));
+            let (words, push) = (hinge.words(&index), sway.name());
             let [x, y] = [at_m.x, at_m.y].map(|at_m| format_fixed(at_m, 5));
             let words = format!("push to the {push}, ({x}, {y}) m: {words}");
             cases.push((SpotKind::Hinge, false), words, case);
@@ -53,8 +56,9 @@ pub fn results(scenario: &Scenario, figure: Figure) -> Result<Results, StudyErro
         cases.push((SpotKind::Hinge, false), String::new(), case);
         cases.spots.clear();
     }
-    let at_rest = |figure, spots: &[Spot]| {
-        draw_hinges(figure, title, (&scene, HINGES), &hinges_m, spots, &[])
+    let at_rest = |figure, spots: &[Spot]| match &bent {
+        Some(bent) => draw_bent(figure, title, &scenario.structure, bent, spots),
+        None => draw_hinges(figure, title, (&scene, HINGES), &hinges_m, spots, &[]),
     };
     // Four links need the undeformed structure; the words have the reason if there are none.
     let as_built = scenario.motion.supports().is_none();

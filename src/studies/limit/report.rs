@@ -11,7 +11,7 @@ use super::yielding::motion_in_words;
 use crate::argument::format_fixed;
 use crate::mechanics::friction::YieldingJoint;
 use crate::mechanics::settling::Pin;
-use crate::mechanics::{Edge, Equivalent, RowOnset, Sides};
+use crate::mechanics::{Edge, Equivalent, HeldMechanism, RowOnset, Sides};
 use crate::output::mechanisms::{HINGES, by_body, columns, degrees};
 use crate::output::{Named, Scene, filters};
 use crate::studies::report::{Report, Warnings};
@@ -59,6 +59,9 @@ pub struct LimitSummary {
     /// Tie forces, and the pushes that depend on ties; absent without ties.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ties: Option<Ties>,
+    /// Horizontal force of the floor on a wall whose top it holds when the mechanism starts, in N, positive against the push; absent if the top is free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub top_reaction_n: Option<Sides<f64>>,
     /// The first mechanism of a row as four links; absent unless the structure is an arch of blocks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub four_links: Option<FourLinkAnswer>,
@@ -414,6 +417,21 @@ pub(super) fn open_joints(row: &Row, onset: Option<&RowOnset>) -> Vec<MechanismH
     open.collect()
 }
 
+/// Hinges of a wall whose top is held.
+pub(super) fn held_hinges(mechanism: &HeldMechanism) -> Vec<MechanismHinge> {
+    let hinges = mechanism.hinges().into_iter().zip(mechanism.hinges_m());
+    let listed = hinges.map(|(hinge, at_m)| match hinge {
+        Hinge::Joint { joint, edge } => MechanismHinge::Joint {
+            joint,
+            edge,
+            x_m: at_m.x,
+            y_m: at_m.y,
+        },
+        hinge => MechanismHinge::Link(hinge),
+    });
+    listed.collect()
+}
+
 impl MechanismHinge {
     /// Place of the hinge in the undeformed structure, in metres.
     pub(super) fn position_m(&self, scene: &Scene) -> Vector2<f64> {
@@ -448,6 +466,11 @@ impl MechanismHinge {
                 edge.name()
             ),
             Self::Link(Hinge::Toe(side)) => format!("the {} toe", side.name()),
+            Self::Link(Hinge::Face { height_m, side }) => format!(
+                "the {} face, {} m above the base",
+                side.name(),
+                format_fixed(*height_m, 4)
+            ),
             Self::Link(Hinge::Joint { joint, edge }) => {
                 format!("joint {joint}, {}", named(edge, "parted"))
             }

@@ -68,7 +68,7 @@ impl NotableImpacts {
 fn joints(hinges: &[Hinge]) -> Vec<usize> {
     let joint = |hinge: &Hinge| match *hinge {
         Hinge::Joint { joint, .. } => Some(joint),
-        Hinge::Section { .. } | Hinge::Toe(_) => None,
+        Hinge::Section { .. } | Hinge::Toe(_) | Hinge::Face { .. } => None,
     };
     hinges.iter().filter_map(joint).collect()
 }

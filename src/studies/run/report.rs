@@ -344,8 +344,10 @@ impl Report {
             .map(|(at, open)| {
                 let code = match open.hinge {
                     Hinge::Section { edge, .. } => edge_code(Some(edge)),
-                    Hinge::Toe(Sway::Left) => edge_code(Some(Edge::Intrados)),
-                    Hinge::Toe(Sway::Right) => edge_code(Some(Edge::Extrados)),
+                    Hinge::Toe(side) | Hinge::Face { side, .. } => edge_code(Some(match side {
+                        Sway::Left => Edge::Intrados,
+                        Sway::Right => Edge::Extrados,
+                    })),
                     Hinge::Joint { edge, .. } => edge_code(edge),
                 };
                 let (body, x_m, y_m) = point(at);

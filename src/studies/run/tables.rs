@@ -284,7 +284,7 @@ fn hinge_cells(hinges: &[Hinge], least: usize) -> Vec<(Option<f64>, Option<&'sta
         Hinge::Section { angle_rad, edge } => {
             Some((Some(angle_rad.to_degrees()), Some(edge.name())))
         }
-        Hinge::Toe(_) | Hinge::Joint { .. } => None,
+        Hinge::Toe(_) | Hinge::Joint { .. } | Hinge::Face { .. } => None,
     });
     let mut cells: Vec<_> = sections.collect();
     cells.resize(cells.len().max(least), (None, None));

@@ -5,16 +5,16 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
-use super::{CheckInput, VerifyError};
+use super::{CheckInput, NoCurve, VerifyError};
 use crate::bisection::{Width, bisect};
-use crate::mechanics::settling::{Held, HeldError};
+use crate::mechanics::settling::Held;
 use crate::mechanics::stability::onset;
 use crate::mechanics::{
-    Anchor, BodyPoint, Capacity, CapacityError, Control, Displaced, Edge, FrictionError,
+    Anchor, BodyPoint, Capacity, Control, Displaced, Edge, FrictionError, HeldMechanism,
     MovingBody, MovingForce, MovingTie, Participation, Parts as _, RowOnset, displacement_factor,
     friction, load_multiplier,
 };
-use crate::scenario::{CheckedSides, Language, Structure};
+use crate::scenario::{CheckedSides, Structure};
 use crate::studies::capacity::Bodies;
 use crate::{Hinge, MechanismModel, Row, Sway};
 
@@ -185,6 +185,12 @@ pub struct CheckedMechanism {
     /// Joints that slide before this mechanism forms, so that it does not count; absent unless they do.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sliding: Option<Slide>,
+    /// Horizontal force of the floor on a wall whose top it holds when the mechanism starts, in kN, positive against the sway; absent if the top is free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub top_reaction_kn: Option<f64>,
+    /// Blocks of a wall whose top is held, cut at its hinges if it has no drums.
+    #[serde(skip)]
+    pub held_row: Option<Row>,
     /// The body to which each block of a row belongs; for pictures of a mechanism without a curve.
     #[serde(skip)]
     pub body_of_block: Vec<Option<usize>>,
@@ -203,78 +209,7 @@ struct VirtualMechanism {
     forces: Vec<MovingForce>,
     body_of_block: Vec<Option<usize>>,
     curves: Result<CapacityCurves, NoCurve>,
-}
-
-/// The reason why a mechanism has no capacity curve. In JSON it is the sentence in English.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(into = "String", from = "String")]
-pub enum NoCurve {
-    /// Joints slide before the mechanism forms.
-    Slides,
-    /// The mechanism has ties.
-    Ties,
-    /// The linkage to this side reaches its limit position before its strength is zero.
-    Locks(Sway),
-    /// It does not move as one mechanism up to the unstable equilibrium, for this reason in English.
-    Moves(String),
-}
-
-impl NoCurve {
-    /// Reason as a sentence. In Italian all reasons of [`NoCurve::Moves`] have one sentence.
-    pub(super) fn in_words(&self, language: Language) -> String {
-        let [english, italian] = match self {
-            Self::Slides => [
-                "joints slide before it forms, and the displacements of sliding joints are not computed",
-                "i giunti scorrono prima che si formi; gli spostamenti di giunti che scorrono non sono calcolati",
-            ],
-            Self::Ties => [
-                "the forces of ties change as the structure moves; this check does not follow them, quasi-static capacity does",
-                "le forze delle catene variano durante il moto; questa verifica non le segue",
-            ],
-            Self::Locks(sway) => [
-                &*CapacityError::Locks(*sway).to_string(),
-                "il cinematismo raggiunge la posizione limite prima che α si annulli",
-            ],
-            Self::Moves(why) => [
-                &**why,
-                "dopo l’attivazione non si muove come un solo cinematismo fino ad α = 0",
-            ],
-        };
-        language.choose(english, italian).to_owned()
-    }
-}
-
-impl From<NoCurve> for String {
-    fn from(why: NoCurve) -> Self {
-        why.in_words(Language::English)
-    }
-}
-
-impl From<String> for NoCurve {
-    fn from(text: String) -> Self {
-        let [right, left] = [Sway::Right, Sway::Left].map(Self::Locks);
-        let mut known = [Self::Slides, Self::Ties, right, left].into_iter();
-        let found = known.find(|why| why.in_words(Language::English) == text);
-        found.unwrap_or(Self::Moves(text))
-    }
-}
-
-impl From<CapacityError> for NoCurve {
-    fn from(error: CapacityError) -> Self {
-        match error {
-            CapacityError::Locks(sway) => Self::Locks(sway),
-            error => Self::Moves(error.to_string()),
-        }
-    }
-}
-
-impl From<HeldError> for NoCurve {
-    fn from(error: HeldError) -> Self {
-        match error {
-            HeldError::Locks(error) => error.into(),
-            error => Self::Moves(error.to_string()),
-        }
-    }
+    held_top: Option<HeldMechanism>,
 }
 
 /// The motion of a mechanism up to its unstable equilibrium, as capacity curves.
@@ -294,7 +229,7 @@ impl CapacityCurves {
         sway: Sway,
         displaced: impl Fn(f64) -> Displaced,
         bodies: &[MovingBody],
-        crown: BodyPoint,
+        crown: Option<BodyPoint>,
         input: &CheckInput<'_>,
     ) -> Result<Self, NoCurve> {
         let gravity_m_s2 = input.gravity_m_s2;
@@ -349,7 +284,7 @@ impl CapacityCurves {
         });
         Ok(Self {
             positions: positions.collect(),
-            crown: curve(Control::point(crown)).ok(),
+            crown: crown.and_then(|crown| curve(Control::point(crown)).ok()),
             centre,
         })
     }
@@ -452,6 +387,8 @@ impl CheckedMechanism {
             curve_m_g: curves.map(CapacityCurves::points_m_g),
             no_curve: found.curves.as_ref().err().cloned(),
             sliding,
+            top_reaction_kn: (found.held_top.as_ref()).map(|held| held.reaction_n / 1000.0),
+            held_row: found.held_top.map(|held| held.row),
             body_of_block: found.body_of_block,
             curves: found.curves.ok(),
         }
@@ -472,6 +409,9 @@ impl VirtualMechanism {
 
     /// `e*` with the loads at points as separate weights [C8.7.1.5, with n + m weights]; `None` if no body carries such a load.
     fn fraction_with_separate_loads(&self, structure: &Structure) -> Option<f64> {
+        if self.held_top.is_some() {
+            return None;
+        }
         let (outlines, loads) = structure.fill_and_loads();
         let carried = outlines.loads_m.iter().zip(loads);
         let points = carried.filter(|(_, load)| load.moves && load.width_m == 0.0);
@@ -503,6 +443,9 @@ impl VirtualMechanism {
 
     /// Numbers of the first and the last block of a body, from 1; `None` for a ring.
     fn blocks_of(&self, body: usize) -> Option<[usize; 2]> {
+        if self.held_top.as_ref().is_some_and(|held| held.is_cut) {
+            return None;
+        }
         let of_body = |of: &Option<usize>| *of == Some(body);
         if let Some(first) = self.body_of_block.iter().position(of_body) {
             let last = self.body_of_block.iter().rposition(of_body);
@@ -510,7 +453,7 @@ impl VirtualMechanism {
         }
         let joint = |hinge: usize| match self.hinges.get(hinge)?.0 {
             Hinge::Joint { joint, .. } => Some(joint),
-            Hinge::Section { .. } | Hinge::Toe(_) => None,
+            Hinge::Section { .. } | Hinge::Toe(_) | Hinge::Face { .. } => None,
         };
         joint(body)
             .zip(joint(body + 1))
@@ -532,7 +475,7 @@ impl VirtualMechanism {
             displaced.expect("a structure has its first mechanism")
         };
         let crown = Bodies::of_model(model, sway).body_point(structure.as_parts().crown());
-        let curves = CapacityCurves::new(sway, displaced, &bodies, crown, input);
+        let curves = CapacityCurves::new(sway, displaced, &bodies, Some(crown), input);
         Some(Self {
             hinges: named.zip(at_rest.hinges_m).collect(),
             curves,
@@ -541,7 +484,28 @@ impl VirtualMechanism {
             ends: Vec::new(),
             forces: model.moving_forces(sway)?,
             body_of_block: Vec::new(),
+            held_top: None,
         })
+    }
+
+    /// Mechanism of a wall whose top is held; ties count as forces, and the top, which does not move sideways, is no control point.
+    fn of_held_top(held: HeldMechanism, sway: Sway, input: &CheckInput<'_>) -> Self {
+        let (bodies, forces) = held.first_motion();
+        let curves = held.end_rad().map_err(NoCurve::from).and_then(|end_rad| {
+            let displaced = |part| held.displaced(part * end_rad);
+            CapacityCurves::new(sway, displaced, &bodies, None, input)
+        });
+        let blocks = 0..held.row.blocks.len();
+        Self {
+            hinges: held.hinges().into_iter().zip(held.hinges_m()).collect(),
+            ties: Vec::new(),
+            ends: Vec::new(),
+            forces,
+            curves,
+            bodies,
+            body_of_block: blocks.map(|block| held.body_of(block)).collect(),
+            held_top: Some(held),
+        }
     }
 
     /// Finds the mechanism of a row at rest by limit analysis, and its motion if the row has no ties.
@@ -611,7 +575,7 @@ impl VirtualMechanism {
             let held = Held::new(row, sway)?;
             let crown = Bodies::of_row(&held).body_point(row.crown());
             let displaced = |part| held.displaced_mechanism(part);
-            CapacityCurves::new(sway, displaced, &bodies, crown, input)
+            CapacityCurves::new(sway, displaced, &bodies, Some(crown), input)
         };
         Self {
             hinges: hinges.collect(),
@@ -621,6 +585,7 @@ impl VirtualMechanism {
             curves: curves(),
             bodies,
             body_of_block,
+            held_top: None,
         }
     }
 }
@@ -685,6 +650,17 @@ pub(super) fn mechanisms(
         _ => None,
     };
     let of = |sway: Sway| {
+        if let Some(column) = structure.held_column() {
+            let held = HeldMechanism::new(column, sway);
+            let held = held.map_err(|error| VerifyError::NoMechanism(error.to_string()))?;
+            let bound_g = held.slide_bound_g(coefficient);
+            let slides = bound_g.map(|bound_g| Slide {
+                coefficient,
+                bound_g,
+            });
+            let found = VirtualMechanism::of_held_top(held, sway, input);
+            return Ok((sway, CheckedMechanism::new(found, slides, input)));
+        }
         let found = if let Ok(model) = &model {
             VirtualMechanism::of_model(structure, &**model, sway, input)
                 .ok_or_else(|| none(sway))?
@@ -711,26 +687,4 @@ pub(super) fn mechanisms(
         .collect::<Result<BTreeMap<Sway, CheckedMechanism>, VerifyError>>()?;
     equalise(&mut mechanisms);
     Ok(mechanisms)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn reasons_are_read_from_json_as_they_were_written() {
-        for why in [
-            NoCurve::Slides,
-            NoCurve::Ties,
-            NoCurve::Locks(Sway::Right),
-            NoCurve::Locks(Sway::Left),
-            NoCurve::Moves("a push to the right opens 3 hinges".to_owned()),
-        ] {
-            let json = serde_json::to_string(&why).unwrap();
-            let english = why.in_words(Language::English);
-            assert_eq!(json, format!("{english:?}"));
-            assert_eq!(serde_json::from_str::<NoCurve>(&json).unwrap(), why);
-            assert_ne!(english, why.in_words(Language::Italian));
-        }
-    }
 }

@@ -7,6 +7,7 @@
 mod geometry;
 mod histories;
 mod mechanism;
+mod no_curve;
 mod picture;
 mod report;
 mod side;
@@ -34,8 +35,9 @@ use crate::studies::report::Warnings;
 pub use geometry::{FillGeometry, Geometry, LoadAt, PlacedBlock, RingGeometry};
 pub use histories::{ComparedPeak, Histories, HistorySide, MeanSpectrum, RecordPeak, RecordPeaks};
 pub use mechanism::{
-    CapacityCurves, CheckedMechanism, HeldTie, MechanismBody, NoCurve, PlacedHinge, Position, Slide,
+    CapacityCurves, CheckedMechanism, HeldTie, MechanismBody, PlacedHinge, Position, Slide,
 };
+pub use no_curve::NoCurve;
 pub use report::{FILES, SidePictures, VerifyPage, page_of, report, words};
 pub use side::{
     ActivationCheck, CheckVerdict, DisplacementCheck, GoverningSide, Margin, Method, SideCheck,
@@ -246,6 +248,7 @@ pub fn verify(scenario: &Scenario) -> Result<VerifySummary, VerifyError> {
             why.map_or_else(String::new, String::from),
         ));
     }
+    let is_stack = structure.stands_on_one_support();
     let by_the_code = matches!(input.demand, Demand::Code(_));
     let formulas = "Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018";
     let results = states.values().filter_map(|one| one.zeta_e);
@@ -267,7 +270,7 @@ pub fn verify(scenario: &Scenario) -> Result<VerifySummary, VerifyError> {
         t0_s: input.t0_s,
         gravity_m_s2: input.gravity_m_s2,
         allowed_friction: input.allowed_friction,
-        is_symmetric: report::are_mirrored(&mechanisms, &states),
+        is_symmetric: report::are_mirrored(is_stack, &mechanisms, &states),
         mechanisms,
         states,
         warnings: Warnings::new(scenario.unlikely_in(&Varied::default()), []),
@@ -276,7 +279,7 @@ pub fn verify(scenario: &Scenario) -> Result<VerifySummary, VerifyError> {
         not_covered: Vec::new(),
         scenario: scenario.to_json(),
         tie_places: structure.tie_places(),
-        top: match structure.stands_on_one_support() {
+        top: match is_stack {
             true => HighestPoint::Top,
             false => HighestPoint::Crown,
         },

@@ -26,8 +26,9 @@ pub(super) fn mechanism(
     sway: Sway,
     mechanism: &CheckedMechanism,
 ) -> String {
-    let scene = match structure.row() {
-        Ok(row) if !mechanism.body_of_block.is_empty() => Scene::of_row(&row, structure),
+    let scene = match (&mechanism.held_row, structure.row()) {
+        (Some(row), _) => Scene::of_row(row, structure),
+        (None, Ok(row)) if !mechanism.body_of_block.is_empty() => Scene::of_row(&row, structure),
         _ => Scene::new(structure),
     };
     let [low, high] = scene.frame_m();

@@ -352,8 +352,9 @@ pub(super) fn add_notes(check: &mut VerifySummary, unused_records: &[&'static st
     check.warnings.extend(part());
 }
 
-/// True if the left side is the mirror image of the right one, including all numbers.
+/// True if the left side is the mirror image of the right one, including all numbers. Hinges and bodies of a stack are in the same order to both sides.
 pub(super) fn are_mirrored(
+    is_stack: bool,
     mechanisms: &BTreeMap<Sway, CheckedMechanism>,
     states: &BTreeMap<LimitState, StateCheck>,
 ) -> bool {
@@ -362,13 +363,17 @@ pub(super) fn are_mirrored(
         return false;
     };
     let mut mirrored = left.clone();
-    mirrored.hinges.reverse();
-    mirrored.bodies.reverse();
+    if !is_stack {
+        mirrored.hinges.reverse();
+        mirrored.bodies.reverse();
+    }
     let hinges = mirrored.hinges.iter_mut().map(|hinge| &mut hinge.x_m);
     let bodies = mirrored.bodies.iter_mut().map(|body| &mut body.x_m);
     let positions = mirrored.positions.iter_mut().flat_map(|at| {
-        at.hinges_m.reverse();
-        at.centres_m.reverse();
+        if !is_stack {
+            at.hinges_m.reverse();
+            at.centres_m.reverse();
+        }
         let points_m = at.hinges_m.iter_mut().chain(&mut at.centres_m);
         points_m.map(|point_m| &mut point_m.x)
     });
