@@ -112,7 +112,7 @@ fn read(input: &Input<'_>) -> Result<Scenario, Failure> {
     match input.read_statics() {
         Ok(scenario) if !scenario.gives_motion() => {
             super::warn(&[format!(
-                "only `limit`, `spread` and `capacity` work: {wrong}"
+                "only `limit`, `spread`, `capacity` and `verify` work: {wrong}"
             )]);
             Ok(scenario)
         }

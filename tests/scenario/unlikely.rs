@@ -372,6 +372,6 @@ fn check_refuses_what_run_refuses() {
     let output = archrock(at, &["check", "s.toml"]);
     assert!(
         output.status.success()
-            && stderr(&output).contains("only `limit`, `spread` and `capacity` work")
+            && stderr(&output).contains("only `limit`, `spread`, `capacity` and `verify` work")
     );
 }
