@@ -30,7 +30,7 @@ Examples:
   archrock film arch.toml --size 720x720 --background f5f0e6 --caption 'Arch, 5 m' --out arch.webm";
 
 pub const LIMIT: &str = "\
-Files: that of --plot; with --out also limit.html, limit.svg, limit.json.
+Files: that of --plot; with --out also limit.html, limit.svg, limit.json; of a vehicle also vehicle.svg, limit.csv.
 
 Examples:
   archrock limit arch.toml

@@ -62,7 +62,7 @@ enum Command {
     #[command(after_help = examples::FILM)]
     #[cfg_attr(not(feature = "print"), command(before_help = archrock_text::wrapped(&PrintError::NotBuilt.to_string()).join("\n")))]
     Film(film::Arguments),
-    /// Print the incipient acceleration, the mechanism to either side and the equivalent block.
+    /// Print the incipient acceleration, the mechanism to either side and the equivalent block; of live loads the factor at collapse.
     #[command(after_help = examples::LIMIT)]
     Limit(limit::LimitArguments),
     /// Print the mechanisms after successive impacts, their restitution and impulses.

@@ -128,7 +128,7 @@ pub(crate) fn draw_hinges(
             .map(|at_m| place.px(at_m.unwrap_or(none).into()));
         drawing.curve("thrust line", thrust_line, THRUST);
         joint_numbers(drawing, &view.place, scene);
-        draw_axes(drawing, &view.place, scene);
+        draw_axes(drawing, &view.place, scene, thrust_line_m.is_empty());
         for (index, (sway, at_m)) in hinges_m.iter().enumerate() {
             // Size and colour differ, for prints in grey.
             let line = match sway {
@@ -365,9 +365,9 @@ pub(crate) fn draw_arrow(
     drawing.polygon("", [tip, barb(-1.0), barb(1.0)], stroke.color, stroke);
 }
 
-/// Draws the axes x and y at the origin, and below it the arrow of a positive ground acceleration. If the origin is outside the structure, as the
+/// Draws the axes x and y at the origin, and, if the ground shakes, below it the arrow of its positive acceleration. If the origin is outside the structure, as the
 /// centre of a flat arch, the axes are at the nearest point inside, with its coordinates.
-fn draw_axes(drawing: &mut Drawing, place: &SheetTransform, scene: &Scene) {
+fn draw_axes(drawing: &mut Drawing, place: &SheetTransform, scene: &Scene, is_shaken: bool) {
     let [low_m, high_m] = scene.frame_m();
     let at_m = Vector2::zeros().sup(&low_m).inf(&high_m);
     let at = place.px(at_m);
@@ -385,6 +385,9 @@ fn draw_axes(drawing: &mut Drawing, place: &SheetTransform, scene: &Scene) {
         false => (Vector2::new(6.0, 14.0), "0".to_owned()),
     };
     drawing.label(at + label, Anchor::Start, 0.0, origin);
+    if !is_shaken {
+        return;
+    }
     let tip = Vector2::new(at.x - 12.0, place.px(low_m).y + 13.0);
     let tail = tip - Vector2::new(PUSH_PX, 0.0);
     draw_arrow(drawing, "ground acceleration", GROUND, [tail, tip]);

@@ -68,7 +68,7 @@ impl LoadTable {
         let wrong = "applies to arches: a load on a column acts at a point; leave it out";
         ensure(self.load.width_m == 0.0, || ("width_m", wrong))?;
         ensure(self.load.pier.is_none(), || ("pier", wrong))?;
-        let wrong = "applies to arches: a column carries `mass_kg`, with `moves = false` as a weight; leave it out";
+        let wrong = "applies to arches: loads of other structures are part of them; leave it out";
         ensure(!self.load.live, || ("live", wrong))?;
         Ok(self.load)
     }

@@ -21,8 +21,8 @@ use super::tie::{self, PULLS_OVER, TieTable};
 use crate::Masonry;
 use crate::argument::ArgumentError;
 use crate::mechanics::masonry::{
-    BasketArch, Dimensions, Fill, FillLevel, GivenBlocks, MasonryError, Material, Pier, Piers,
-    Remedy, Spread, Vehicle,
+    BasketArch, Dimensions, Fill, FillLevel, GivenBlocks, MAX_AXLES, MasonryError, Material, Pier,
+    Piers, Remedy, Spread, Vehicle,
 };
 use crate::mechanics::stability::collapse_mechanism;
 use crate::mechanics::{DENSITY_KG_M3, DEPTH_M, MAX_BLOCKS};
@@ -322,8 +322,14 @@ impl Additions {
                 table.reject_in(&["vehicle"], error.argument, allowed(error))
             }
             MasonryError::NoFill => {
-                let wrong = "spreads the axles through fill: give [fill], or spread = \"none\"";
+                let wrong = match shape {
+                    "blocks" => "spreads the axles through fill, which [blocks] do not have: leave it out",
+                    _ => "spreads the axles through fill: give [fill], or spread = \"none\"",
+                };
                 table.reject_in(&["vehicle"], "spread", wrong)
+            }
+            MasonryError::NoRoad => {
+                table.reject("vehicle", format!("does not fit: {error}; leave it out"))
             }
             MasonryError::Load(index, error) => {
                 table.reject_in_element(("load", *index), error.argument, allowed(error))
@@ -439,6 +445,8 @@ fn read_vehicle(table: &mut Table<'_>) -> ReadResult<Vehicle> {
         "axles_kg",
         "has no axle: give their loads in kg",
     )?;
+    let wrong = format!("has {axles} axles: give at most {MAX_AXLES}");
+    table.refuse(axles > MAX_AXLES, "axles_kg", wrong)?;
     if spacings + 1 != axles {
         let wrong = format!(
             "has {axles} axles and {spacings} distances between them: give the distance of each axle from the one before in `spacing_m`"

@@ -60,7 +60,7 @@ pub use impact::{
     ImpactOptions, ImpactSummary, LinkImpact, chain as impact_chain, chain_result,
     four_links_result,
 };
-pub use limit::{LimitSummary, LiveAnswer, LiveLimit, VehiclePosition, limit};
+pub use limit::{LimitSummary, LiveAnswer, LiveLimit, PlacedAxle, VehiclePosition, limit};
 pub use page::page_of as study_page_of;
 pub use part::{
     Header, PartError, PartErrorKind, PartFile, Shard, merge as merge_parts, read_header, rows_in,

@@ -75,7 +75,7 @@ fn commands_below_pictures_draw_them() {
         assert!(below.starts_with(&format!("\n\n{expected}`")), "{expected}");
         shown += 1;
     }
-    assert_eq!(shown, 14);
+    assert_eq!(shown, 13);
 }
 
 #[test]

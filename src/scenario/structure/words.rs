@@ -2,7 +2,7 @@
 
 use super::Structure;
 use super::dimensions::{circular_arch, measured_line, metres};
-use crate::mechanics::masonry::FillLevel;
+use crate::mechanics::masonry::{FillLevel, Spread};
 use crate::mechanics::{MasonryShape, MeasuredAt, PlacedLoad, Tie};
 use crate::{Arch, Column, Masonry};
 
@@ -187,12 +187,16 @@ fn masonry_words(masonry: &Masonry) -> Vec<String> {
     parts.extend(masonry.vehicle.as_ref().map(|vehicle| {
         let axles = vehicle.axles_kg.iter().map(|axle_kg| metres(*axle_kg));
         let axles = axles.collect::<Vec<_>>().join(", ");
+        let spread = match vehicle.spread {
+            Spread::None => "",
+            Spread::TwoToOne => ", spread 2:1 through the fill",
+        };
         match &vehicle.spacing_m[..] {
-            [] => format!("vehicle with one axle of {axles} kg"),
+            [] => format!("vehicle with one axle of {axles} kg{spread}"),
             spacing_m => {
                 let apart = spacing_m.iter().map(|spacing_m| metres(*spacing_m));
                 let apart = apart.collect::<Vec<_>>().join(", ");
-                format!("vehicle with axles of {axles} kg, {apart} m apart")
+                format!("vehicle with axles of {axles} kg, {apart} m apart{spread}")
             }
         }
     }));

@@ -1,7 +1,10 @@
 //! Mistakes in the structure, its joints and the demand on it that only several numbers together show.
 
+use std::ops::RangeInclusive;
+
 use super::{Numbers, Unlikely, plain};
 use crate::Column;
+use crate::mechanics::masonry::Vehicle;
 use crate::scenario::Scenario;
 
 impl Scenario {
@@ -18,7 +21,10 @@ impl Scenario {
             ]
         });
         let loads = column.into_iter().flat_map(loads_beside);
-        let found = alone.flatten().chain(loads);
+        let vehicle = self.structure.under_live_loads();
+        let vehicle = vehicle.and_then(|masonry| masonry.vehicle.as_ref());
+        let axles = vehicle.into_iter().flat_map(unlikely_axles);
+        let found = alone.flatten().chain(loads).chain(axles);
         let others = [stiff_mortar(numbers), falling_hazard(numbers)];
         found.chain(others.into_iter().flatten()).collect()
     }
@@ -61,6 +67,29 @@ fn loads_beside(column: &Column) -> impl Iterator<Item = Unlikely> {
         );
         Unlikely::new(format!("load.{number}.x_m"), load.x_m, "m", warning)
     })
+}
+
+/// Warnings about axles that are lighter than a hand cart or heavier than any road bridge bears, and about their distances.
+fn unlikely_axles(vehicle: &Vehicle) -> impl Iterator<Item = Unlikely> {
+    let unusual = |values: &[f64], usual: RangeInclusive<f64>| {
+        let mut values = values.iter().copied();
+        values.find(|value| !usual.contains(value))
+    };
+    let axle = unusual(&vehicle.axles_kg, 50.0..=50_000.0).map(|axle_kg| {
+        let warning = format!(
+            "an axle of the vehicle has {} kg: are loads in kg?",
+            plain(axle_kg)
+        );
+        Unlikely::new("vehicle.axles_kg", axle_kg, "kg", warning)
+    });
+    let spacing = unusual(&vehicle.spacing_m, 0.3..=50.0).map(|spacing_m| {
+        let warning = format!(
+            "two axles of the vehicle are {} m apart: are distances in metres?",
+            plain(spacing_m)
+        );
+        Unlikely::new("vehicle.spacing_m", spacing_m, "m", warning)
+    });
+    axle.into_iter().chain(spacing)
 }
 
 /// Warning about mortar that is stiffer than the blocks between it.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::yielding::motion_in_words;
 use crate::argument::format_fixed;
-use crate::mechanics::friction::{LiveCollapse, YieldingJoint, live_collapse};
+use crate::mechanics::friction::{YieldingJoint, live_collapse};
 use crate::mechanics::masonry::{LoadedExtrados, Masonry, Vehicle};
 use crate::mechanics::{FrictionError, PlacedLoad};
 use crate::output::{CURVES, Chart, Figure, Mark, OutputError, Table, column, fields};
@@ -13,12 +13,14 @@ use crate::studies::StudyError;
 use crate::studies::runner::in_parallel;
 use crate::{Scenario, Structure, Sway};
 
-/// Number of equal steps of a vehicle from where its first axle comes onto the arch to where its last one leaves it.
+/// Number of equal steps of a vehicle from where its front axle comes onto the arch to where its last one leaves it.
 const STEPS: usize = 200;
 /// Number of positions of a vehicle in words.
 const PRINTED: usize = 12;
+/// Largest multiplier in pictures and words, over the least one.
+const MOST_SHOWN: f64 = 5.0;
 /// Number of times that the worst position of a vehicle is sought again on steps a tenth as long.
-const FINER: i32 = 3;
+const FINER: i32 = 5;
 
 /// Collapse under live loads, or under a vehicle at its worst position.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,23 +35,34 @@ pub struct LiveLimit {
     pub positions: Vec<VehiclePosition>,
 }
 
-/// The least multiplier, with its mechanism.
+/// The least multiplier, with its mechanism. A load at a point on a joint is on the side of the joint where it is worse.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LiveAnswer {
+    /// The coefficient of friction; null without sliding.
+    pub friction_coefficient: Option<f64>,
     /// Factor on the live loads at which the structure collapses; null if it carries any factor.
     pub multiplier: Option<f64>,
-    /// Weight of the live loads on the structure at collapse, in N; null if it carries any factor.
+    /// Weight of the live loads on the arch at collapse, in N; null if it carries any factor.
     pub weight_n: Option<f64>,
-    /// Position of the first axle of the vehicle, in metres; absent without a vehicle.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub x_m: Option<f64>,
     /// Side to which the vehicle drives; absent without a vehicle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub towards: Option<Sway>,
+    /// Axles of the vehicle from the front one on; absent without a vehicle.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub axles: Vec<PlacedAxle>,
     /// Joints of the mechanism; empty if the structure carries any factor.
     pub mechanism: Vec<YieldingJoint>,
     /// Thrust line at collapse: x and y of its point in each joint, in metres, null without compression; empty if the structure carries any factor.
     pub thrust_line_m: Vec<Option<[f64; 2]>>,
+}
+
+/// An axle of a vehicle at its worst position.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlacedAxle {
+    /// Its position, in metres.
+    pub x_m: f64,
+    /// Mass of the axle that acts on the arch, in kg; zero for an axle off the arch.
+    pub on_arch_kg: f64,
 }
 
 /// A position of a vehicle.
@@ -57,7 +70,7 @@ pub struct LiveAnswer {
 pub struct VehiclePosition {
     /// Side to which the vehicle drives.
     pub towards: Sway,
-    /// Position of its first axle, in metres.
+    /// Position of its front axle, in metres.
     pub x_m: f64,
     /// Factor on the axles at which the structure collapses without sliding; null if it carries any factor.
     pub multiplier: Option<f64>,
@@ -73,49 +86,74 @@ struct Loaded<'m> {
 }
 
 impl Loaded<'_> {
-    /// Computes the collapse under live loads.
+    /// Computes the collapse under live loads, the least for loads on joints.
     fn collapse(
         &self,
         loads: &[PlacedLoad],
         coefficient: Option<f64>,
-    ) -> Result<LiveAnswer, FrictionError> {
+    ) -> Result<LiveAnswer, StudyError> {
+        let placed = self.extrados.beside_joints(loads).into_iter();
+        let answers = placed.map(|loads| self.collapse_under(&loads, coefficient));
+        Ok(least(answers.collect::<Result<_, _>>()?))
+    }
+
+    fn collapse_under(
+        &self,
+        loads: &[PlacedLoad],
+        coefficient: Option<f64>,
+    ) -> Result<LiveAnswer, StudyError> {
         let weights = self.extrados.weights(loads);
         let mass_kg: f64 = weights.iter().map(|weight| weight.mass_kg).sum();
+        let none = LiveAnswer {
+            friction_coefficient: coefficient,
+            ..LiveAnswer::default()
+        };
         if mass_kg == 0.0 {
-            return Ok(LiveAnswer::default());
+            return Ok(none);
         }
-        let found = live_collapse(&self.masonry.row, coefficient, &weights)?;
-        let answer = |found: LiveCollapse| LiveAnswer {
+        let found = live_collapse(&self.masonry.row, coefficient, &weights);
+        let found = found.map_err(|error| match error {
+            FrictionError::NotSolved(status) => StudyError::failed(format!(
+                "the limit analysis under live loads was not solved ({status}): move the live load, or change the spacing of the axles, by a millimetre"
+            )),
+            error => error.into(),
+        })?;
+        let Some(found) = found else { return Ok(none) };
+        let thrust_m = found.thrust_m.iter();
+        Ok(LiveAnswer {
             multiplier: Some(found.multiplier),
             weight_n: Some(found.multiplier * mass_kg * self.gravity_m_s2),
             mechanism: found.yields,
-            thrust_line_m: found
-                .thrust_m
-                .iter()
-                .map(|at_m| at_m.map(Into::into))
-                .collect(),
-            ..LiveAnswer::default()
-        };
-        Ok(found.map(answer).unwrap_or_default())
+            thrust_line_m: thrust_m.map(|at_m| at_m.map(Into::into)).collect(),
+            ..none
+        })
     }
 
     /// Computes the collapse under a vehicle at a position.
     fn collapse_at(
         &self,
         vehicle: &Vehicle,
-        (x_m, towards): (f64, Sway),
+        (x_m, towards): Position,
         coefficient: Option<f64>,
-    ) -> Result<LiveAnswer, FrictionError> {
-        let axles = self.extrados.axles(vehicle, x_m, towards);
+    ) -> Result<LiveAnswer, StudyError> {
+        let loads = self.extrados.axles(vehicle, x_m, towards);
+        let on_arch_kg = |load: &PlacedLoad| {
+            let weights = self.extrados.weights(&[*load]);
+            weights.iter().map(|weight| weight.mass_kg).sum()
+        };
+        let axles = loads.iter().map(|load| PlacedAxle {
+            x_m: load.x_m,
+            on_arch_kg: on_arch_kg(load),
+        });
         Ok(LiveAnswer {
-            x_m: Some(x_m),
             towards: Some(towards),
-            ..self.collapse(&axles, coefficient)?
+            axles: axles.collect(),
+            ..self.collapse(&loads, coefficient)?
         })
     }
 }
 
-/// A position of the first axle, and the side to which the vehicle drives.
+/// A position of the front axle, and the side to which the vehicle drives.
 type Position = (f64, Sway);
 
 impl Loaded<'_> {
@@ -125,7 +163,7 @@ impl Loaded<'_> {
         vehicle: &Vehicle,
         positions: &[Position],
         coefficient: Option<f64>,
-    ) -> Result<Vec<LiveAnswer>, FrictionError> {
+    ) -> Result<Vec<LiveAnswer>, StudyError> {
         let at = |position: &Position| self.collapse_at(vehicle, *position, coefficient);
         in_parallel(positions, at).into_iter().collect()
     }
@@ -136,11 +174,12 @@ impl Loaded<'_> {
         vehicle: &Vehicle,
         (answers, mut step_m): (&[LiveAnswer], f64),
         coefficient: Option<f64>,
-    ) -> Result<LiveAnswer, FrictionError> {
+    ) -> Result<LiveAnswer, StudyError> {
         let mut worst = least(answers.to_vec());
         for _ in 0..FINER {
-            let (Some(x_m), Some(towards), Some(_)) = (worst.x_m, worst.towards, worst.multiplier)
-            else {
+            let front_m = worst.axles.first().map(|axle| axle.x_m);
+            let place = front_m.zip(worst.towards).zip(worst.multiplier);
+            let Some(((x_m, towards), _)) = place else {
                 break;
             };
             step_m *= 0.1;
@@ -256,25 +295,44 @@ fn joint_in_words(joint: &YieldingJoint) -> String {
 }
 
 impl LiveLimit {
-    /// Returns the structure with the axles of its vehicle at the worst position without sliding, as points, in place of the vehicle.
+    /// Returns the answer with the least multiplier.
+    pub(super) fn governing(&self) -> &LiveAnswer {
+        self.answers()[0]
+    }
+
+    /// Returns the answers, that with the least multiplier first.
+    pub(super) fn answers(&self) -> Vec<&LiveAnswer> {
+        let multiplier = |answer: &&LiveAnswer| answer.multiplier.unwrap_or(f64::INFINITY);
+        let both = [&self.without_sliding]
+            .into_iter()
+            .chain(&self.with_friction);
+        let mut both: Vec<&LiveAnswer> = both.collect();
+        both.sort_by(|one, other| multiplier(one).total_cmp(&multiplier(other)));
+        both
+    }
+
+    /// Returns the structure with the axles of its vehicle at the worst position in place of the vehicle; what they spread over beyond the arch is cut off.
     pub(super) fn loaded(&self, structure: &Structure) -> Structure {
-        let worst = self.without_sliding.x_m.zip(self.without_sliding.towards);
+        let worst = self.governing();
         let on_axles = |masonry: &Masonry| {
-            let (vehicle, (x_m, towards)) = (masonry.vehicle.as_ref()?, worst?);
+            let vehicle = masonry.vehicle.as_ref()?;
             let extrados = masonry.loaded_extrados().ok()?;
             let joints_m = extrados.joints_m();
             let (from_m, to_m) = (joints_m[0], joints_m[joints_m.len() - 1]);
-            let mut loads = extrados.axles(vehicle, x_m, towards);
-            loads.retain(|axle| (from_m..=to_m).contains(&axle.x_m));
-            loads.iter_mut().for_each(|axle| axle.width_m = 0.0);
+            let mut loads = extrados.axles(vehicle, worst.axles.first()?.x_m, worst.towards?);
+            for (axle, placed) in loads.iter_mut().zip(&worst.axles) {
+                let ends_m = [-0.5, 0.5].map(|part| axle.x_m + part * axle.width_m);
+                let [low_m, high_m] = ends_m.map(|end_m| end_m.clamp(from_m, to_m));
+                (axle.x_m, axle.width_m) = (0.5 * (low_m + high_m), high_m - low_m);
+                axle.mass_kg = placed.on_arch_kg;
+            }
+            loads.retain(|axle| axle.mass_kg > 0.0);
             loads.extend(&masonry.loads);
             Masonry::new(masonry.shape.clone(), masonry.piers, masonry.fill, loads).ok()
         };
         let loaded = structure.under_live_loads().and_then(on_axles);
-        loaded.map_or_else(
-            || structure.clone(),
-            |loaded| Structure::Masonry(Box::new(loaded)),
-        )
+        let loaded = loaded.map(|loaded| Structure::Masonry(Box::new(loaded)));
+        loaded.unwrap_or_else(|| structure.clone())
     }
 
     /// Makes the answer from that without sliding, and that with friction if there is one.
@@ -287,41 +345,55 @@ impl LiveLimit {
         }
     }
 
-    /// Returns the answers, each with its condition in words.
-    pub(super) fn answers(&self) -> Vec<(&'static str, &LiveAnswer)> {
-        let friction = self.with_friction.iter();
-        let friction = friction.map(|answer| ("with the given coefficient of friction", answer));
-        let all = [("without sliding", &self.without_sliding)].into_iter();
-        all.chain(friction).collect()
-    }
-
     /// Returns the answers in words: of each the factor, then its place and its limits.
     pub(super) fn in_words(&self) -> Vec<Vec<String>> {
         let answers = self.answers().into_iter();
-        let words = answers.map(|(condition, answer)| {
-            let what = if answer.x_m.is_some() {
-                "vehicle"
+        answers.map(|answer| self.answer_in_words(answer)).collect()
+    }
+
+    fn answer_in_words(&self, answer: &LiveAnswer) -> Vec<String> {
+        let (what, on_arch) = match self.positions[..] {
+            [] => ("live load", ""),
+            _ => ("vehicle", " on the arch"),
+        };
+        let condition = match answer.friction_coefficient {
+            Some(coefficient) => format!("with a friction coefficient of {coefficient:?}"),
+            None => "without sliding".to_owned(),
+        };
+        let Some((multiplier, weight_n)) = answer.multiplier.zip(answer.weight_n) else {
+            return vec![format!(
+                "{condition}, no multiple of the {what} makes it collapse"
+            )];
+        };
+        let fails = (multiplier < 1.0).then(|| format!("the arch does not carry this {what}"));
+        let axles = answer.axles.iter().map(|axle| {
+            let off = if axle.on_arch_kg > 0.0 {
+                ""
             } else {
-                "live load"
+                " (off the arch)"
             };
-            let Some((multiplier, weight_n)) = answer.multiplier.zip(answer.weight_n) else {
-                let words = format!("{condition}, no multiple of the {what} makes it collapse");
-                return vec![words];
-            };
-            let place = answer.x_m.zip(answer.towards).map(|(x_m, towards)| {
-                let (x, side) = (format_fixed(x_m, 3), towards.name());
-                format!("its first axle is at x = {x} m, on the way to the {side}")
-            });
-            let slips = |joint: &YieldingJoint| joint.slips_towards.is_some();
-            let is_bound = answer.mechanism.iter().any(slips);
-            let bound = is_bound.then(|| "joints slip, so this is an upper bound".to_owned());
-            let [multiplier, load] = [(multiplier, 4), (1e-3 * weight_n, 3)]
-                .map(|(value, decimals)| format_fixed(value, decimals));
-            let words =
-                format!("{condition}, it collapses under {multiplier} times the {what}, {load} kN");
-            [words].into_iter().chain(place).chain(bound).collect()
+            format!("{}{off}", format_fixed(axle.x_m, 3))
         });
-        words.collect()
+        let axles = axles.collect::<Vec<_>>().join(", ");
+        let place = answer
+            .towards
+            .map(|side| format!("axles at x = {axles} m, driving to the {}", side.name()));
+        let slips = |joint: &YieldingJoint| joint.slips_towards.is_some();
+        let bound = answer.mechanism.iter().any(slips);
+        let bound = bound.then(|| {
+            "the true factor may be lower: joints are assumed to open as they slip".to_owned()
+        });
+        let [multiplier, load] = [(multiplier, 4), (1e-3 * weight_n, 3)]
+            .map(|(value, decimals)| format_fixed(value, decimals));
+        let words = format!(
+            "{condition}, it collapses under {multiplier} times the {what} ({load} kN{on_arch})"
+        );
+        [words]
+            .into_iter()
+            .chain(fails)
+            .chain(place)
+            .chain(bound)
+            .collect()
     }
 
     /// Returns the joints of the mechanism of an answer in words.
@@ -329,20 +401,57 @@ impl LiveLimit {
         answer.mechanism.iter().map(joint_in_words)
     }
 
-    /// Returns some positions of the vehicle on the way of the worst one, each with its factor without sliding, as a table.
+    /// Returns some positions of the vehicle on its worst way and the worst one, each with its factors, as a table with a heading; empty without a worst one.
     pub(super) fn positions_in_words(&self) -> Vec<String> {
-        let towards = self.without_sliding.towards;
+        let worst = self.governing();
+        let place = worst.towards.zip(worst.multiplier).zip(worst.axles.first());
+        let Some(((towards, least), front)) = place else {
+            return Vec::new();
+        };
         let way = self
             .positions
             .iter()
-            .filter(|place| Some(place.towards) == towards);
-        let places: Vec<_> = way.filter(|place| place.multiplier.is_some()).collect();
-        let shown = places.iter().step_by(places.len().div_ceil(PRINTED).max(1));
-        let lines = shown.filter_map(|place| {
-            let factor = format_fixed(place.multiplier?, 3);
-            Some(format!("{:>8} {factor:>10}", format_fixed(place.x_m, 2)))
+            .filter(|place| place.towards == towards);
+        let least_of = |place: &VehiclePosition| {
+            let multipliers = [place.multiplier, place.multiplier_with_friction];
+            multipliers
+                .into_iter()
+                .flatten()
+                .fold(f64::INFINITY, f64::min)
+        };
+        let near: Vec<_> = way
+            .filter(|place| least_of(place) <= MOST_SHOWN * least)
+            .collect();
+        let nearest = near.iter().min_by(|one, other| {
+            let away_m = |place: &VehiclePosition| (place.x_m - front.x_m).abs();
+            away_m(one).total_cmp(&away_m(other))
         });
-        lines.collect()
+        let shown = near.iter().step_by(near.len().div_ceil(PRINTED).max(1));
+        let mut shown: Vec<_> = shown.chain(nearest).collect();
+        shown.sort_by(|one, other| {
+            (one.x_m * towards.sign()).total_cmp(&(other.x_m * towards.sign()))
+        });
+        shown.dedup();
+        let factor =
+            |value: Option<f64>| value.map_or("any".to_owned(), |value| format_fixed(value, 3));
+        let lines = shown.into_iter().map(|place| {
+            let friction = self
+                .with_friction
+                .is_some()
+                .then(|| format!(" {:>10}", factor(place.multiplier_with_friction)));
+            let (x, friction) = (format_fixed(place.x_m, 3), friction.unwrap_or_default());
+            format!("{x:>9} {:>10}{friction}", factor(place.multiplier))
+        });
+        let friction = if self.with_friction.is_some() {
+            ", and with friction"
+        } else {
+            ""
+        };
+        let heading = format!(
+            "x in m of the front axle, driving to the {}; factor without sliding{friction}",
+            towards.name()
+        );
+        [heading].into_iter().chain(lines).collect()
     }
 
     /// Makes the table of the positions of the vehicle.
@@ -362,13 +471,13 @@ impl LiveLimit {
                 "",
                 (|place| place.multiplier) as fn(&VehiclePosition) -> Option<f64>,
             ),
-            (", with friction", |place| place.multiplier_with_friction),
+            (", friction", |place| place.multiplier_with_friction),
         ];
         let all = Sway::ALL
             .iter()
             .flat_map(|side| conditions.map(|it| (*side, it)));
         // Near the springings the multiplier is many times as large.
-        let least = self.without_sliding.multiplier.unwrap_or(0.0);
+        let least = self.governing().multiplier.unwrap_or(0.0);
         let curves = all
             .zip(CURVES)
             .filter_map(|((side, (condition, value)), stroke)| {
@@ -379,17 +488,14 @@ impl LiveLimit {
                 };
                 let points = places.map(|place| (place.x_m, shown(place).unwrap_or(f64::NAN)));
                 let points: Vec<_> = points.collect();
-                let name = format!("to the {}{condition}", side.name());
+                let name = format!("driving to the {}{condition}", side.name());
                 let is_shown = points.iter().any(|(_, multiplier)| multiplier.is_finite());
                 is_shown.then(|| Mark::curve(name, stroke, points))
             });
         let labels = [
-            "position of the first axle (m)",
-            "factor on the vehicle at collapse",
+            "position of the front axle (m)",
+            "factor at collapse, up to 5 times the least",
         ];
         Chart::around(figure, 330.0, labels, curves.collect()).draw(figure, title)
     }
 }
-
-/// Largest multiplier in the picture, over the least one.
-const MOST_SHOWN: f64 = 5.0;

@@ -6,7 +6,7 @@ mod report;
 mod yielding;
 
 use self::live::live_limit;
-pub use self::live::{LiveAnswer, LiveLimit, VehiclePosition};
+pub use self::live::{LiveAnswer, LiveLimit, PlacedAxle, VehiclePosition};
 pub(super) use self::page::{FILES, results};
 pub use self::report::{
     FourLinkAnswer, FourLinkSide, Friction, FrictionLimit, FrictionSide, LimitSummary, TieLimits,

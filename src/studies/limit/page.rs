@@ -22,7 +22,7 @@ pub const FILES: [&str; 5] = [
 
 const HINGES: &str = "circles: hinges that a push opens, to the right large and orange, to the left small and purple; blue arrow: positive \
                       ground acceleration, which pushes to the left";
-const LIVE: &str = "circles: joints that open or slip at collapse under the live loads without sliding; blue line: thrust line";
+const LIVE: &str = "live loads at collapse; circles: joints that open or slip; blue line: thrust line between its points in the joints";
 const SLOWLY: &str = "the push grows slowly from zero; a short pulse may exceed it without overturning; joints slip only in results with a \
                       coefficient of friction";
 
@@ -51,11 +51,7 @@ pub fn results(scenario: &Scenario, figure: Figure) -> Result<Results, StudyErro
             hinges_m.push((sway, at_m));
         }
     }
-    if hinges_m.is_empty() {
-        // The command remains, without a mark.
-        cases.push((SpotKind::Hinge, false), String::new(), case);
-        cases.spots.clear();
-    }
+    keep_command(&mut cases, &text);
     let at_rest = |figure, spots: &[Spot]| match &bent {
         Some(bent) => draw_bent(figure, title, &scenario.structure, bent, spots),
         None => draw_hinges(figure, title, (&scene, HINGES), &hinges_m, spots, &[]),
@@ -85,6 +81,16 @@ pub fn results(scenario: &Scenario, figure: Figure) -> Result<Results, StudyErro
     Ok(results.in_order(&FILES))
 }
 
+/// Adds the command to a page without marks.
+fn keep_command(cases: &mut PageCases, text: &CaseScenario) {
+    if cases.spots.is_empty() {
+        cases.push((SpotKind::Hinge, false), String::new(), || {
+            Some(text.clone())
+        });
+        cases.spots.clear();
+    }
+}
+
 /// Makes the files and the words of a structure under live loads, or under a vehicle, drawn at its worst position.
 fn live_results(
     scenario: &Scenario,
@@ -93,7 +99,7 @@ fn live_results(
     figure: Figure,
 ) -> Result<Results, StudyError> {
     let title = scenario.title.as_deref().unwrap_or("Limit analysis");
-    let (structure, answer) = (&scenario.structure, &live.without_sliding);
+    let (structure, answer) = (&scenario.structure, live.governing());
     let scene = Scene::new(&live.loaded(structure));
     let mut cases = PageCases::default();
     let text = CaseScenario::unchanged(cases.add_text(&scenario.to_json(), false));
@@ -103,6 +109,7 @@ fn live_results(
         let words = format!("({x}, {y}) m: {words}");
         cases.push((SpotKind::Hinge, false), words, || Some(text.clone()));
     }
+    keep_command(&mut cases, &text);
     let hinges_m: Vec<_> = hinges
         .iter()
         .map(|(at_m, _)| (Sway::Right, *at_m))

@@ -6,10 +6,14 @@ use super::cut::CutArch;
 use super::{MAGNITUDE, Masonry, MasonryError};
 use crate::argument::{ArgumentError, require_count, require_within};
 use crate::mechanics::load::Weight;
-use crate::mechanics::{PlacedLoad, Sway};
+use crate::mechanics::{PlacedLoad, Supports, Sway};
 
 /// Largest number of axles of a vehicle.
 pub const MAX_AXLES: usize = 20;
+/// Distance from a joint, and width of a patch, over the distance of the ends of the arch, up to which a load is on the joint, and acts at a point.
+const ON_JOINT: f64 = 1e-9;
+/// Largest number of loads on joints that are placed on either side of each.
+const MOST_ON_JOINTS: usize = 8;
 
 named! {
     /// Spreading of axles through the fill.
@@ -24,7 +28,7 @@ named! {
 /// Vehicle that crosses an arch.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Vehicle {
-    /// Loads of the axles from the first one on, in kg.
+    /// Loads of the axles from the front one on, in kg.
     pub axles_kg: Vec<f64>,
     /// Distances of neighbouring axles, in metres.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -47,7 +51,7 @@ impl Vehicle {
         Ok(())
     }
 
-    /// Distance of each axle from the first one, in metres.
+    /// Distance of each axle from the front one, in metres.
     pub fn distances_m(&self) -> impl Iterator<Item = f64> {
         let spacings = [0.0].iter().chain(&self.spacing_m);
         spacings.scan(0.0, |behind_m, spacing_m| {
@@ -74,6 +78,10 @@ impl Masonry {
     /// If a number of the vehicle is not allowed, or it spreads through fill that is not there.
     pub fn with_vehicle(mut self, vehicle: Vehicle) -> Result<Self, MasonryError> {
         vehicle.check().map_err(MasonryError::Vehicle)?;
+        let [from_m, to_m] = self.shape.cut()?.ends_m();
+        if self.row.supports != Supports::Both || from_m >= to_m {
+            return Err(MasonryError::NoRoad);
+        }
         if vehicle.spread == Spread::TwoToOne && self.fill.is_none() {
             return Err(MasonryError::NoFill);
         }
@@ -108,10 +116,43 @@ impl LoadedExtrados {
         joints.map(|joint| joint.extrados_m.x).collect()
     }
 
+    /// These loads, with those that act at points on joints on either side of their joint: all combinations, or, of many such loads, all on one side.
+    pub fn beside_joints(&self, loads: &[PlacedLoad]) -> Vec<Vec<PlacedLoad>> {
+        let joints_m = self.joints_m();
+        let near_m = ON_JOINT * (joints_m[joints_m.len() - 1] - joints_m[0]);
+        let is_on_joint = |load: &PlacedLoad| {
+            let mut joints = joints_m.iter();
+            load.live && load.width_m == 0.0 && joints.any(|x_m| (load.x_m - x_m).abs() < near_m)
+        };
+        let on_joints = loads
+            .iter()
+            .enumerate()
+            .filter(|(_, load)| is_on_joint(load));
+        let on_joints: Vec<usize> = on_joints.map(|(index, _)| index).collect();
+        let combinations: Vec<usize> = match on_joints.len() {
+            count if count <= MOST_ON_JOINTS => (0..1 << count).collect(),
+            _ => vec![0, usize::MAX],
+        };
+        let placed = combinations.into_iter().map(|sides| {
+            let mut loads = loads.to_vec();
+            for (bit, index) in on_joints.iter().enumerate() {
+                let side = if sides >> bit & 1 == 0 { -1.0 } else { 1.0 };
+                loads[*index].x_m += 2.0 * side * near_m;
+            }
+            loads
+        });
+        placed.collect()
+    }
+
     /// Live loads as weights on the blocks of the row. What is beyond the ends of the arch is left out.
     pub fn weights(&self, loads: &[PlacedLoad]) -> Vec<Weight> {
         let live = loads.iter().filter(|load| load.live);
-        let bodies = live.flat_map(|load| load.bodies(&self.arch));
+        let bodies = live.flat_map(|load| {
+            let mut bodies = load.bodies(&self.arch);
+            // Slivers of a patch are rounding errors.
+            bodies.retain(|(_, body)| body.mass_kg > ON_JOINT * load.mass_kg);
+            bodies
+        });
         let weights = bodies.map(|(voussoir, body)| Weight {
             block: self.first + voussoir,
             mass_kg: body.mass_kg,
@@ -120,7 +161,7 @@ impl LoadedExtrados {
         weights.collect()
     }
 
-    /// Axles of a vehicle as live loads; its first axle is at `x_m`, and it drives to a side.
+    /// Axles of a vehicle as live loads; its front axle is at `x_m`, and it drives to a side.
     pub fn axles(&self, vehicle: &Vehicle, x_m: f64, towards: Sway) -> Vec<PlacedLoad> {
         let axles = vehicle.axles_kg.iter().zip(vehicle.distances_m());
         let axles = axles.map(|(axle_kg, behind_m)| {
@@ -139,7 +180,14 @@ impl LoadedExtrados {
         let [from_m, to_m] = self.arch.ends_m();
         let below = PlacedLoad::mass(1.0, x_m.clamp(from_m, to_m)).place_m(&self.arch);
         match (spread, below, self.fill_top_m) {
-            (Spread::TwoToOne, Some((_, below_m)), Some(top_m)) => (top_m - below_m.y).max(0.0),
+            (Spread::TwoToOne, Some((_, below_m)), Some(top_m)) => {
+                let deep_m = top_m - below_m.y;
+                if deep_m > ON_JOINT * (to_m - from_m) {
+                    deep_m
+                } else {
+                    0.0
+                }
+            }
             _ => 0.0,
         }
     }

@@ -30,8 +30,10 @@ impl PlacedLoad {
         let ends_m = arch.ends_m();
         let half_m = 0.5 * self.width_m;
         let (from_m, to_m) = (ends_m[0] + half_m, ends_m[1] - half_m);
+        let wide_m = ends_m[1] - ends_m[0];
         let allowed = match from_m < to_m {
             true => format!("from {from_m:.6} to {to_m:.6}, so that it stands on the extrados"),
+            false if wide_m > 0.0 => format!("that of a load narrower than the extrados, {wide_m:.6} m"),
             false => "on the extrados, which is no upper side here: give the load as a part of a block, by its density or outline".to_owned(),
         };
         require(all_stands, "x_m", self.x_m, allowed).map(|_| ())

@@ -263,6 +263,9 @@ pub enum MasonryError {
     /// A number of the vehicle is out of range.
     #[error("vehicle: {0}")]
     Vehicle(ArgumentError),
+    /// A vehicle crosses blocks that are no arch.
+    #[error("a vehicle crosses an arch between two supports, whose extrados is its upper side")]
+    NoRoad,
     /// A vehicle spreads through fill, and there is none.
     #[error("the axles spread through fill, and there is none")]
     NoFill,
