@@ -344,6 +344,7 @@ impl Scenario {
             verify.check_demand(table, demand.as_ref())?;
         }
         let ((motion, ignores_impact), (structure, ties)) = (motion?, built?);
+        let motion = motion.for_structure(&structure);
         let shaken_s = ground.as_ref().map_or(0.0, |it| it.motion.end_s());
         let end_s = simulated.map(|it| it.end_s(shaken_s, structure.size_m()));
         if !(unproved && kind.has_joints) {

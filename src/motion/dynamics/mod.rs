@@ -20,7 +20,7 @@ pub(crate) mod variation;
 
 pub use self::demand::{GroundSpectrum, Site};
 pub use self::direction::{Direction, Directions};
-pub use self::elastic_joints::ElasticJoints;
+pub use self::elastic_joints::{ElasticJoints, ReboundError};
 pub use self::fall::FallEnd;
 pub use self::free_hinges::{DOUBTFUL_ENERGY_ERROR, FreeHinges, RowOptions};
 pub use self::ground::{

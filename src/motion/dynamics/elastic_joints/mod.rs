@@ -6,7 +6,9 @@
 mod lane;
 mod model;
 mod motion;
+mod rebound;
 mod stepper;
 mod stillness;
 
 pub use model::ElasticJoints;
+pub use rebound::ReboundError;

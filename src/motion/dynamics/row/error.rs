@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::argument::ArgumentError;
+use crate::dynamics::ReboundError;
 use crate::mechanics::elastic_joint::RestError;
 use crate::mechanics::{FrictionError, RowError, SettlingError, StabilityError};
 
@@ -34,6 +35,9 @@ pub enum RowModelError {
     /// No equilibrium was found during the movement of the supports.
     #[error(transparent)]
     Settling(#[from] SettlingError),
+    /// No damping gives the rebound.
+    #[error("the rebound ratio {0}")]
+    Rebound(#[from] ReboundError),
 }
 
 /// Reason why a motion of a row of blocks was not computed.
