@@ -243,6 +243,20 @@ impl Scenario {
         self.simulation.gravity_m_s2
     }
 
+    /// Condition that the density is the default, if static results depend on it: with fill, loads or ties.
+    pub(crate) fn default_density_in_words(&self) -> Option<String> {
+        let tables = &self.given.tables;
+        let mut beside = ["fill", "load", "tie"].into_iter();
+        let beside = beside.find(|name| tables.contains_key(*name))?;
+        let mut shape = ["arch", "column"].into_iter().chain(masonry::SHAPES);
+        let shape = shape.find_map(|name| tables.get(name))?;
+        let (_, density_kg_m3) = self.structure.depth_and_density();
+        shape.get("density_kg_m3").is_none().then(|| {
+            let density = plain(density_kg_m3);
+            format!("the density is the default, {density} kg/m3: with [{beside}] the result depends on it, so give `density_kg_m3`")
+        })
+    }
+
     /// Message about a table that the model of motion ignores; `None` if it ignores no table of the file.
     pub fn ignored_table(&self) -> Option<&'static str> {
         let message = self.motion.kind.ignored;

@@ -1,6 +1,7 @@
 //! Fill above an arch, as weight and mass that move with the voussoir below.
 //!
-//! The fill vertically above the extrados of a voussoir, up to a level top, is part of its rigid block. Other effects of real fill are neglected:
+//! The fill vertically above the extrados of a voussoir, up to a level top, is part of its rigid block; that above the top of a pier may be
+//! part of its top block. Other effects of real fill are neglected:
 //! lateral pressure, spreading of loads, passive resistance against the haunches, and shear between columns that move differently.
 
 use nalgebra::Vector2;
@@ -10,7 +11,7 @@ use super::Material;
 use super::cut::{CutArch, top};
 use crate::argument::{ArgumentError, require_within};
 use crate::mechanics::arch::MAGNITUDE;
-use crate::mechanics::{Block, Curve};
+use crate::mechanics::{Block, Curve, Sway};
 
 /// Fill up to a level top.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -20,6 +21,9 @@ pub struct Fill {
     pub level: FillLevel,
     /// Density of the fill in kg/m3.
     pub density_kg_m3: f64,
+    /// True if it also lies on the tops of piers outside the extrados, as part of their top blocks.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub on_piers: bool,
 }
 
 /// Level of the top of the fill.
@@ -62,6 +66,31 @@ impl Fill {
             }
         }
         Ok(())
+    }
+
+    /// Corners of the fill on the top of a pier, level outwards of its springing up to a width in metres; `None` without such fill. The extrados
+    /// of an arch leans inwards from its springings, so nothing is above it.
+    pub(super) fn on_pier_m(
+        &self,
+        arch: &CutArch,
+        (side, width_m): (Sway, f64),
+    ) -> Result<Option<[Vector2<f64>; 4]>, ArgumentError> {
+        let (joints, level_m) = (arch.joints(), self.level_m(arch)?);
+        let springing = match side {
+            Sway::Left => joints[0],
+            Sway::Right => joints[joints.len() - 1],
+        };
+        let from = springing.extrados_m;
+        let to = springing.intrados_m.x + side.sign() * width_m;
+        let is_covered = (to - from.x).abs() > 1e-9 * width_m && level_m > from.y;
+        let corners = [
+            (from.x, from.y),
+            (to, from.y),
+            (to, level_m),
+            (from.x, level_m),
+        ];
+        let corners = corners.map(|(x, y)| Vector2::new(x, y));
+        Ok((self.on_piers && is_covered).then_some(corners))
     }
 
     /// Height of its top, in metres.
