@@ -55,14 +55,6 @@ impl MotionModel {
             .unwrap_or(ImpactModel::MaxRestitution.into())
     }
 
-    /// This model with the options that depend on a structure.
-    pub(super) fn for_structure(mut self, structure: &Structure) -> Self {
-        if let Some(options) = self.options.for_structure(structure, &self.site) {
-            self.options = options;
-        }
-        self
-    }
-
     /// Rejects options that do not fit a structure. `end_s` is the end of the history, if it is known.
     pub(super) fn check(
         &self,

@@ -247,20 +247,14 @@ impl Rocking {
             -sign * motion.bodies[0].angle_rad.0[0]
         };
         let longest_s = LONGEST_CYCLE * (size_m / self.gravity_m_s2).sqrt();
-        let (mut peak_rad, mut rebound_rad, mut steps) = (0.0_f64, 0.0_f64, 0);
-        loop {
+        let (mut peak_rad, mut rebound_rad) = (0.0_f64, 0.0_f64);
+        // At the start the block may vibrate.
+        let half_cycle = (1..(longest_s / step_s) as usize).find(|_| {
             let turned_rad = next_rad();
             peak_rad = peak_rad.max(turned_rad);
-            steps += 1;
-            // At the start the block may vibrate.
-            if turned_rad <= 0.0 && peak_rad > 0.5 * part * first.critical_rad {
-                break;
-            }
-            if steps as f64 * step_s > longest_s {
-                return 0.0;
-            }
-        }
-        for _ in 0..steps {
+            turned_rad <= 0.0 && peak_rad > 0.5 * part * first.critical_rad
+        });
+        for _ in 0..half_cycle.unwrap_or(0) {
             let turned_rad = side * next_rad();
             rebound_rad = rebound_rad.max(turned_rad);
             if rebound_rad > LEAST_REBOUND * peak_rad && turned_rad < 0.95 * rebound_rad {

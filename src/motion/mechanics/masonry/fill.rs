@@ -7,11 +7,11 @@
 use nalgebra::Vector2;
 use serde::Serialize;
 
-use super::Material;
 use super::cut::{CutArch, top};
+use super::{Material, Piers};
 use crate::argument::{ArgumentError, require_within};
 use crate::mechanics::arch::MAGNITUDE;
-use crate::mechanics::{Block, Curve, Sway};
+use crate::mechanics::{Block, Curve, Row};
 
 /// Fill up to a level top.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -68,29 +68,40 @@ impl Fill {
         Ok(())
     }
 
-    /// Corners of the fill on the top of a pier, level outwards of its springing up to a width in metres; `None` without such fill. The extrados
-    /// of an arch leans inwards from its springings, so nothing is above it.
-    pub(super) fn on_pier_m(
+    /// Lays fill on the tops of the piers of a row whose first voussoir has this index. Returns the row, and all fill to draw. The extrados of an arch
+    /// leans inwards from its springings, so nothing is above such fill.
+    pub(super) fn lay_on(
         &self,
+        mut row: Row,
+        (piers, first): (&Piers, usize),
         arch: &CutArch,
-        (side, width_m): (Sway, f64),
-    ) -> Result<Option<[Vector2<f64>; 4]>, ArgumentError> {
+        depth_m: f64,
+    ) -> Result<(Row, Vec<FillColumn>), ArgumentError> {
         let (joints, level_m) = (arch.joints(), self.level_m(arch)?);
-        let springing = match side {
-            Sway::Left => joints[0],
-            Sway::Right => joints[joints.len() - 1],
-        };
-        let from = springing.extrados_m;
-        let to = springing.intrados_m.x + side.sign() * width_m;
-        let is_covered = (to - from.x).abs() > 1e-9 * width_m && level_m > from.y;
-        let corners = [
-            (from.x, from.y),
-            (to, from.y),
-            (to, level_m),
-            (from.x, level_m),
+        let mut columns = self.outlines_for_drawing(arch)?;
+        columns.iter_mut().for_each(|(block, _)| *block += first);
+        let sides = [
+            (piers.left, -1.0, 0, first.wrapping_sub(1)),
+            (piers.right, 1.0, joints.len() - 1, first + arch.voussoirs()),
         ];
-        let corners = corners.map(|(x, y)| Vector2::new(x, y));
-        Ok((self.on_piers && is_covered).then_some(corners))
+        for (pier, sign, springing, top) in sides {
+            let from = joints[springing].extrados_m;
+            let width_m = pier.map_or(0.0, |pier| pier.width_m);
+            let to_x = joints[springing].intrados_m.x + sign * width_m;
+            let is_covered = sign * (to_x - from.x) > 1e-9 * width_m && level_m > from.y;
+            if self.on_piers && is_covered {
+                let corners = [
+                    (from.x, from.y),
+                    (to_x, from.y),
+                    (to_x, level_m),
+                    (from.x, level_m),
+                ];
+                let corners_m = corners.map(|(x, y)| Vector2::new(x, y)).to_vec();
+                row = row.with_body(top, &Block::prism(&corners_m, depth_m, self.density_kg_m3));
+                columns.push((top, corners_m));
+            }
+        }
+        Ok((row, columns))
     }
 
     /// Height of its top, in metres.
@@ -108,10 +119,7 @@ impl Fill {
     }
 
     /// Fill above each voussoir: index of the voussoir, and corners of a polygon to draw the fill.
-    pub(super) fn outlines_for_drawing(
-        &self,
-        arch: &CutArch,
-    ) -> Result<Vec<FillColumn>, ArgumentError> {
+    fn outlines_for_drawing(&self, arch: &CutArch) -> Result<Vec<FillColumn>, ArgumentError> {
         let level_m = self.level_m(arch)?;
         let outline = |piece: &Curve| {
             let parts = (0..=DRAWN_POINTS).map(|i| f64::from(i) / f64::from(DRAWN_POINTS));

@@ -23,7 +23,7 @@ use super::stability::collapse_mechanism;
 use super::tie::TieError;
 use crate::argument::{ArgumentError, require, require_count, require_within};
 use crate::mechanics::contact::ContactError;
-use crate::mechanics::{Block, Joint, Row, RowError, Supports, Sway, Tie};
+use crate::mechanics::{Joint, Row, RowError, Supports, Sway, Tie};
 use cut::CutArch;
 pub use fill::{Fill, FillColumn, FillLevel};
 pub use given::{GivenBlocks, OutlineError};
@@ -327,26 +327,11 @@ impl Masonry {
                 row = row.with_body(first + voussoir, extra);
             }
         }
-        let fill_m = fill.map_or(Ok(Vec::new()), |fill| fill.outlines_for_drawing(&arch));
-        let mut fill_m = fill_m.map_err(MasonryError::Fill)?;
-        fill_m
-            .iter_mut()
-            .for_each(|(voussoir, _)| *voussoir += first);
-        for (side, pier) in [(Sway::Left, piers.left), (Sway::Right, piers.right)] {
-            let Some((fill, pier)) = fill.zip(pier) else {
-                continue;
-            };
-            let corners_m = fill.on_pier_m(&arch, (side, pier.width_m));
-            if let Some(corners_m) = corners_m.map_err(MasonryError::Fill)? {
-                let top = match side {
-                    Sway::Left => first - 1,
-                    Sway::Right => row.blocks.len() - pier.blocks,
-                };
-                let body = Block::prism(&corners_m, material.depth_m, fill.density_kg_m3);
-                row = row.with_body(top, &body);
-                fill_m.push((top, corners_m.to_vec()));
-            }
+        let (row, fill_m) = match &fill {
+            Some(fill) => fill.lay_on(row, (&piers, first), &arch, material.depth_m),
+            None => Ok((row, Vec::new())),
         }
+        .map_err(MasonryError::Fill)?;
         let (row, mut load_outlines) = place_loads(&loads, &arch, (&piers, first), row)?;
         load_outlines.fill_m = fill_m;
         Ok(Self {
