@@ -74,7 +74,7 @@ impl Rigid {
 fn history(text: &str) -> (Scenario, History) {
     let scenario = Scenario::parse(text, "block.toml").unwrap_or_else(|error| panic!("{error}"));
     let model = scenario.model().unwrap();
-    let history = model.history(&scenario.ground_motion(), &scenario.request());
+    let history = model.history(scenario.ground_motion(), &scenario.request());
     (scenario, history.unwrap())
 }
 
@@ -260,7 +260,7 @@ fn variations_keep_the_rebound() {
         .model
         .as_ref()
         .unwrap()
-        .simulate(&scenario.ground_motion(), &scenario.request(), None)
+        .simulate(scenario.ground_motion(), &scenario.request(), None)
         .unwrap();
     let Details::Elastic(_, elastic) = &summary.details else {
         panic!("elastic joints")

@@ -20,7 +20,7 @@ pub(crate) mod variation;
 
 pub use self::demand::{GroundSpectrum, Site};
 pub use self::direction::{Direction, Directions};
-pub use self::elastic_joints::{ElasticJoints, ReboundError};
+pub use self::elastic_joints::ElasticJoints;
 pub use self::fall::FallEnd;
 pub use self::free_hinges::{DOUBTFUL_ENERGY_ERROR, FreeHinges, RowOptions};
 pub use self::ground::{
@@ -39,7 +39,7 @@ pub use self::peak::{NO_RISE, Peak};
 pub use self::recording::{History, MEMORY_BYTES, MemoryError, Recording, Samples};
 pub use self::repeatability::{OutcomeCount, Repeatability, Verdict};
 pub(crate) use self::row::clock::Settings;
-pub use self::row::error::{RowModelError, RowMotionError};
+pub use self::row::error::{ReboundError, RowModelError, RowMotionError};
 pub(crate) use self::row::input::MotionInput;
 pub(crate) use self::row::observer::MotionObserver;
 pub(crate) use self::row::stepper::Stepper;

@@ -11,4 +11,3 @@ mod stepper;
 mod stillness;
 
 pub use model::ElasticJoints;
-pub use rebound::ReboundError;
