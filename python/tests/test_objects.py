@@ -611,6 +611,12 @@ def test_simulate_takes_every_key_of_a_model(arch: Arch, pulse: Pulse) -> None:
     by_ratio = simulate(stack, weak, **joints, damping_ratio=0.01, damping_frequency_hz=20.0)
     by_time = simulate(stack, weak, **joints, damping_time_s=0.01 / (np.pi * 20.0))
     assert by_ratio.rotations == pytest.approx(by_time.rotations, abs=1e-9) and by_ratio.rotations.any()
+    # A rebound finds the damping time of a single block; drums have none.
+    single = Column(2.0, 0.5)
+    rebound = simulate(single, weak, **joints, rebound_ratio=0.97)
+    assert rebound.summary["damping_time_s"] != simulate(single, weak, **joints).summary["damping_time_s"]
+    with pytest.raises(ValueError, match="the rebound of one block"):
+        simulate(stack, weak, **joints, rebound_ratio=0.97)
     continuous = simulate(stack, weak, **joints, contact="continuous")
     assert np.array_equal(continuous.rotations, simulate(stack, weak, **joints).rotations)
 

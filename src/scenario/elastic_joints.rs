@@ -9,7 +9,7 @@ use super::model_kind::{AnyModel, ModelKind, ModelOptions, Site};
 use super::prelude::*;
 use super::structure::{ModelError, Structure};
 use crate::argument::ArgumentError;
-use crate::dynamics::Variation;
+use crate::dynamics::{ReboundError, Variation};
 use crate::mechanics::ElasticStructure;
 use crate::mechanics::elastic_joint::{
     Contact, ElasticProperties, JointStiffness, Materials, RestError, Stiffness,
@@ -29,6 +29,8 @@ const TABLE: &[&str] = &["elastic_joints"];
 /// Largest normal stiffness: stiffer joints are practically rigid.
 const STIFFEST_GPA_M: f64 = 1000.0;
 
+/// Ratios of rates that a rebound may have.
+const REBOUND_RATIO: Number = between(Excluded(0.0), Excluded(1.0));
 const MODULUS_GPA: Number = scale_range(&ElasticProperties::MODULUS_PA, GPA);
 const ONE_POINT: &str = "one does not hold a block";
 const POINTS: Count = Count(ElasticProperties::CONTACT_POINTS, ONE_POINT);
@@ -75,6 +77,12 @@ struct ElasticTable {
     friction_coefficient: Option<f64>,
     /// Damping time, in s: damping forces are this time multiplied by the rates of the elastic forces.
     damping_time_s: f64,
+    /// Ratio of rates of an impact that the damping time gives; `None` if the damping is given.
+    #[serde(skip)]
+    rebound_ratio: Option<f64>,
+    /// Reason why no damping time gives this ratio, once it has been sought.
+    #[serde(skip)]
+    no_rebound: Option<ReboundError>,
     /// Compressive strength of joints, in MPa; `None` if joints do not crush.
     compressive_strength_mpa: Option<f64>,
     /// Number of contact points that carry the stress; `None` for continuous contact.
@@ -99,6 +107,8 @@ impl ElasticTable {
             mortar_thickness_m: table.optional("mortar_thickness_m", &mortar_m),
             friction_coefficient: table.optional("friction_coefficient", &friction),
             damping_time_s: read_damping(table),
+            rebound_ratio: table.optional("rebound_ratio", &REBOUND_RATIO),
+            no_rebound: None,
             compressive_strength_mpa: table.optional("compressive_strength_mpa", &STRENGTH_MPA),
             contact_points: table.optional("contact_points", &POINTS),
             longest_step_s: table.optional("longest_step_s", &within(&ElasticJoints::STEP_S)),
@@ -175,9 +185,9 @@ impl ElasticTable {
                 let wrong = format!(
                     "makes steps of {step} s, too many for a motion of {end} s: give less damping, or a shorter [simulation] duration_s"
                 );
-                let by_ratio = table.has_key_in(TABLE[0], "damping_ratio");
-                let key = ["damping_time_s", "damping_ratio"][usize::from(by_ratio)];
-                Err(table.reject_in(TABLE, key, wrong))
+                let given = |key: &&&str| table.has_key_in(TABLE[0], key);
+                let key = ["damping_ratio", "rebound_ratio"].iter().find(given);
+                Err(table.reject_in(TABLE, key.unwrap_or(&"damping_time_s"), wrong))
             }
             _ => Ok(()),
         }
@@ -187,8 +197,12 @@ impl ElasticTable {
     fn build_model(&self, structure: &Structure, site: &Site) -> Result<ElasticJoints, ModelError> {
         let (depth_m, _) = structure.depth_and_density();
         let (gravity_m_s2, properties) = (site.gravity_m_s2, self.properties(depth_m));
+        if let Some(error) = self.no_rebound {
+            return Err(ModelError::ElasticJoints(error.into()));
+        }
         let model = match structure.column() {
-            Some(column) => ElasticJoints::of_column(gravity_m_s2, column, properties),
+            Some(column) => ElasticJoints::of_column(gravity_m_s2, column, properties)
+                .map(|model| model.keeping_rebound(column, self.rebound_ratio)),
             None => {
                 let row = structure.row().map_err(RowModelError::from)?;
                 ElasticJoints::under(gravity_m_s2, row, properties)
@@ -211,6 +225,30 @@ impl ModelOptions for ElasticTable {
 
     fn model(&self, structure: &Structure, site: &Site) -> AnyModel {
         Ok(Box::new(self.build_model(structure, site)?))
+    }
+
+    /// Finds the damping time that gives the rebound.
+    fn for_structure(&self, structure: &Structure, site: &Site) -> Option<Arc<dyn ModelOptions>> {
+        let rate_ratio = self.rebound_ratio?;
+        let (depth_m, _) = structure.depth_and_density();
+        let properties = self.properties(depth_m);
+        let found = match structure.column() {
+            Some(column) => ElasticJoints::damping_time_of_rebound_s(
+                site.gravity_m_s2,
+                column,
+                &properties,
+                rate_ratio,
+            ),
+            None => Err(ReboundError::SeveralBlocks.into()),
+        };
+        let mut resolved = *self;
+        match found {
+            Ok(time_s) => resolved.damping_time_s = time_s,
+            Err(RowModelError::Rebound(error)) => resolved.no_rebound = Some(error),
+            // A fault of the structure or its joints, which every model reports.
+            Err(_) => {}
+        }
+        Some(Arc::new(resolved))
     }
 
     /// Makes models with other stiffness and contact, and one with rigid joints, unless a wall stands behind the structure.
@@ -271,6 +309,9 @@ impl ModelOptions for ElasticTable {
             })?
             .on_supports(site.supports.displacements());
         let Err(error) = joints.rest([0.0, -site.gravity_m_s2]) else {
+            if let Some(error) = self.no_rebound {
+                return Err(table.reject_in(TABLE, "rebound_ratio", error.to_string()));
+            }
             return self.check_step(table, &joints, end_s);
         };
         let key = match error {
@@ -309,6 +350,7 @@ const NO_STIFFNESS: &str = "lacks a stiffness: give `normal_stiffness_gpa_m`, or
 const OF_MODULI: &str = "goes with `normal_stiffness_gpa_m`: from moduli both follow; leave it out";
 const OF_STONE: &str = "goes with `stone_modulus_gpa`, and `normal_stiffness_gpa_m` is that of the whole joint; leave it out";
 const OF_CRITICAL: &str = " beside it: it is a part of critical damping at a frequency";
+const OF_CRUSHING: &str = "cannot be combined with `rebound_ratio`: joints that crush lose other energy at each impact; give `damping_time_s`";
 const RELATIONS: &[Relation<'_>] = &[
     OneOf(
         &["normal_stiffness_gpa_m", "stone_modulus_gpa"],
@@ -317,8 +359,13 @@ const RELATIONS: &[Relation<'_>] = &[
     Excludes("stone_modulus_gpa", "shear_stiffness_gpa_m", OF_MODULI),
     Together(&["mortar_modulus_gpa", "mortar_thickness_m"]),
     Excludes("normal_stiffness_gpa_m", "mortar_modulus_gpa", OF_STONE),
-    AtMostOne(&["damping_time_s", "damping_ratio"], GIVE_ONE),
+    AtMostOne(
+        &["damping_time_s", "damping_ratio", "rebound_ratio"],
+        GIVE_ONE,
+    ),
     AtMostOne(&["damping_time_s", "damping_frequency_hz"], GIVE_ONE),
+    AtMostOne(&["rebound_ratio", "damping_frequency_hz"], GIVE_ONE),
+    Excludes("rebound_ratio", "compressive_strength_mpa", OF_CRUSHING),
     Requires("damping_ratio", "damping_frequency_hz", OF_CRITICAL),
     Requires("damping_frequency_hz", "damping_ratio", " beside it"),
     AtMostOne(&["contact", "contact_points"], GIVE_ONE),

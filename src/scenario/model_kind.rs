@@ -88,6 +88,11 @@ pub(crate) trait ModelOptions: Debug + Send + Sync {
     /// When the structure does not rock as four links, or is not a row of blocks that can stand.
     fn model(&self, structure: &Structure, site: &Site) -> AnyModel;
 
+    /// Options that depend on the structure, once it is known; `None` if none do.
+    fn for_structure(&self, _: &Structure, _: &Site) -> Option<Arc<dyn ModelOptions>> {
+        None
+    }
+
     /// Makes models with other, equally likely properties.
     ///
     /// # Errors

@@ -423,6 +423,7 @@ pub fn random_masonry(random: &mut Random) -> Option<Masonry> {
             FillLevel::AboveSpringing(random.within(0.5, 3.0))
         },
         density_kg_m3: 1600.0,
+        on_piers: random.chance(0.5),
     });
     let loads = if random.chance(0.5) {
         vec![PlacedLoad {

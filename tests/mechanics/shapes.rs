@@ -9,7 +9,7 @@ use archrock::mechanics::masonry::{
     MasonryShape, Material, Pier, Piers, PlacedLoad,
 };
 use archrock::mechanics::stability::onset;
-use archrock::mechanics::{Joint, Row, Supports};
+use archrock::mechanics::{Block, Joint, Row, Supports};
 use archrock::scenario::{Scenario, Structure};
 use archrock::{Arch, Outcome, Request, Sway};
 use nalgebra::Vector2;
@@ -132,6 +132,7 @@ fn fill_has_the_weight_between_extrados_and_level() {
         let fill = Fill {
             level,
             density_kg_m3: 1500.0,
+            on_piers: false,
         };
         Masonry::new(circular(11), Piers::default(), Some(fill), Vec::new()).unwrap()
     };
@@ -150,6 +151,67 @@ fn fill_has_the_weight_between_extrados_and_level() {
     let crown = |masonry: &Masonry| masonry.row.blocks[5].mass_kg;
     assert_eq!(crown(&haunches), crown(&alone(circular(11))));
     assert!(crown(&above) > crown(&haunches));
+}
+
+/// Fill on piers is a rectangle from the extrados of the springing outwards, up to the level of the fill, that moves with the top block.
+#[test]
+fn fill_on_piers_is_a_rectangle_on_their_top_blocks() {
+    let pier = |width_m, blocks| Pier {
+        height_m: 3.0,
+        width_m,
+        blocks,
+        density_kg_m3: None,
+        pedestal: false,
+    };
+    let piers = Piers {
+        left: Some(pier(1.6, 2)),
+        right: Some(pier(1.2, 3)),
+    };
+    let with = |on_piers, piers| {
+        let fill = Fill {
+            level: FillLevel::AboveSpringing(2.0),
+            density_kg_m3: 1500.0,
+            on_piers,
+        };
+        Masonry::new(circular(11), piers, Some(fill), Vec::new()).unwrap()
+    };
+    let (bare, filled) = (with(false, piers), with(true, piers));
+    // The springings are level, from 4.625 to 5.375 m.
+    let rectangle = |side: f64, width_m: f64| {
+        let beyond_m = width_m - 0.75;
+        let mass_kg = 1500.0 * beyond_m * 2.0;
+        Block {
+            mass_kg,
+            centre_m: Vector2::new(side * (5.375 + 0.5 * beyond_m), 1.0),
+            inertia_kg_m2: mass_kg * (beyond_m * beyond_m + 4.0) / 12.0,
+        }
+    };
+    let added = bare
+        .row
+        .clone()
+        .with_body(1, &rectangle(-1.0, 1.6))
+        .with_body(13, &rectangle(1.0, 1.2));
+    for (block, due) in filled.row.blocks.iter().zip(&added.blocks) {
+        assert!((block.mass_kg / due.mass_kg - 1.0).abs() < 1e-12);
+        assert!((block.centre_m - due.centre_m).norm() < 1e-12);
+        assert!((block.inertia_kg_m2 / due.inertia_kg_m2 - 1.0).abs() < 1e-12);
+    }
+    for sway in [Sway::Right, Sway::Left] {
+        let [found_g, due_g, bare_g] =
+            [&filled.row, &added, &bare.row].map(|row| acceleration_g(row, sway));
+        assert!((found_g / due_g - 1.0).abs() < 1e-10);
+        assert!((found_g / bare_g - 1.0).abs() > 0.01);
+    }
+    // Drawings have it on the same blocks.
+    let drawn = filled.load_outlines.fill_m.iter().map(|(block, _)| *block);
+    assert!(drawn.clone().any(|block| block == 1) && drawn.clone().any(|block| block == 13));
+    // Piers as wide as the springings carry none.
+    let narrow = Piers {
+        left: Some(pier(0.75, 1)),
+        right: None,
+    };
+    let masses = [false, true].map(|on_piers| with(on_piers, narrow).row.mass_kg());
+    assert_eq!(masses[0], masses[1]);
 }
 
 #[test]

@@ -20,6 +20,7 @@ mod loads;
 mod model;
 mod outcomes;
 mod random_histories;
+mod rebound;
 mod rest;
 mod sliding;
 mod sliding_impacts;

@@ -981,6 +981,7 @@ fn long_arches_under_heavy_fill_near_their_least_friction_are_solved() {
         let fill = Some(Fill {
             level,
             density_kg_m3,
+            on_piers: false,
         });
         let masonry = Masonry::new(shape, Piers::default(), fill, Vec::new()).unwrap();
         let row = masonry.row.clone();

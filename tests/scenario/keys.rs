@@ -538,6 +538,10 @@ fn every_relation_between_keys_is_checked() {
             &not_with("damping_frequency_hz", "damping_time_s"),
         ),
         (
+            &format!("{normal}damping_time_s = 1e-4\nrebound_ratio = 0.9\n"),
+            &not_with("rebound_ratio", "damping_time_s"),
+        ),
+        (
             &format!("{normal}damping_ratio = 0.1\n"),
             &needs("damping_frequency_hz"),
         ),

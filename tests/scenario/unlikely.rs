@@ -375,3 +375,72 @@ fn check_refuses_what_run_refuses() {
             && stderr(&output).contains("only `limit`, `spread`, `capacity` and `verify` work")
     );
 }
+
+/// A statue of 1.2 t and 500 kg m2 in the units of its keys, and in others.
+#[test]
+fn units_of_a_body_are_checked() {
+    let warnings = |keys: &str| {
+        let text = format!("[body]\n{keys}\n{PULSE}");
+        Scenario::parse(&text, "statue.toml")
+            .unwrap()
+            .unlikely_values()
+    };
+    let right =
+        "mass_kg = 1200\ninertia_kg_m2 = 500\ncentre_m = [0.05, 0.9]\ntoes_x_m = [-0.4, 0.4]";
+    assert_eq!(warnings(right), [""; 0]);
+    for (wrong, words) in [
+        (
+            right.replace("1200", "1.2").replace("500", "0.5"),
+            "the mass of the body is 1.2 kg: is it in t?",
+        ),
+        (
+            right.replace("500", "5e5"),
+            "the radius of gyration of the body is 20.4124 m",
+        ),
+        (
+            right.replace("500", "0.5"),
+            "the radius of gyration of the body is 0.0204124 m",
+        ),
+        (
+            "mass_kg = 1200\ninertia_kg_m2 = 5e5\ncentre_m = [5, 90]\ntoes_x_m = [-40, 40]"
+                .to_owned(),
+            "the centre of gravity is at 90 m",
+        ),
+    ] {
+        let found = warnings(&wrong);
+        assert!(found.iter().any(|one| one.starts_with(words)), "{found:?}");
+    }
+}
+
+/// The default density is a condition of A_L where A_L depends on it, and the program computes that: 1800 and 2400 kg/m3 give other pushes.
+#[test]
+fn a_default_density_is_named_where_the_push_depends_on_it() {
+    let pointed = "[pointed_arch]\nspan_m = 6.0\nrise_m = 4.0\nthickness_m = 0.6\nvoussoirs = 14\n";
+    let fill = "[fill]\nabove_crown_m = 0.3\ndensity_kg_m3 = 1600\n";
+    let limit = |text: &str| {
+        let scenario = Scenario::parse(&format!("{text}[free_hinges]\n"), "arch.toml").unwrap();
+        let found = archrock::studies::limit(&scenario).unwrap().json;
+        let warnings: Vec<String> = serde_json::from_value(found["warnings"].clone()).unwrap();
+        let push_g = found["incipient_acceleration_g"]["right"].as_f64();
+        (push_g.unwrap(), warnings)
+    };
+    let named = "the density is the default, 2000 kg/m3: with [fill]";
+    let (bare_g, warnings) = limit(pointed);
+    assert!(warnings.is_empty());
+    let (default_g, warnings) = limit(&format!("{pointed}{fill}"));
+    assert!(
+        warnings.len() == 1 && warnings[0].starts_with(named),
+        "{warnings:?}"
+    );
+    for density in [1800.0, 2000.0, 2400.0] {
+        let given = format!("{pointed}density_kg_m3 = {density}\n");
+        let (push_g, warnings) = limit(&format!("{given}{fill}"));
+        assert!(warnings.is_empty());
+        assert_eq!(
+            (push_g / default_g - 1.0).abs() > 0.01,
+            density != 2000.0,
+            "{push_g}"
+        );
+        assert!((limit(&given).0 / bare_g - 1.0).abs() < 1e-9);
+    }
+}

@@ -103,6 +103,10 @@ fn cases() -> Vec<Case> {
             vec![("elastic_joints.damping_time_s", 1e-3), ("elastic_joints.normal_stiffness_gpa_m", 2.0)],
         ),
         (
+            format!("{COLUMN}{elastic}damping_ratio = 0.05\ndamping_frequency_hz = 20.0\n{sine}"),
+            vec![("elastic_joints.rebound_ratio", 0.97), ("column.height_m", 2.6)],
+        ),
+        (
             "[blocks]\njoints = 'scenarios/straight-sided-voussoirs.csv'\ndensity_kg_m3 = 2700.0\n".to_owned()
                 + free
                 + "[ground.one_sine]\namplitude_g = 0.8\nduration_s = 0.4\n",

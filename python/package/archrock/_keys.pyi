@@ -1130,6 +1130,7 @@ class RunKeys:
     largest_compressive_stress_joint: int
     largest_compressive_stress_time_s: float
     elastic_j: float
+    damping_time_s: float
     damped_j: float
     friction_j: float
     crushed_j: float
@@ -1219,6 +1220,7 @@ class RunResult:
     largest_compressive_stress_joint: int
     largest_compressive_stress_time_s: float
     elastic_j: float
+    damping_time_s: float
     damped_j: float
     friction_j: float
     crushed_j: float

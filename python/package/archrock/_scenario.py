@@ -332,6 +332,7 @@ def simulate(
     damping_time_s: float | None = None,
     damping_ratio: float | None = None,
     damping_frequency_hz: float | None = None,
+    rebound_ratio: float | None = None,
     compressive_strength_mpa: float | None = None,
     contact: Literal["continuous"] | None = None,
     contact_points: int | None = None,
@@ -380,6 +381,7 @@ def simulate(
         damping_time_s: damping forces are this time multiplied by the rates of the elastic forces; ``None``: the default, 1e-4.
         damping_ratio: share of critical damping at ``damping_frequency_hz``, instead of ``damping_time_s``.
         damping_frequency_hz: frequency of that share.
+        rebound_ratio: ratio of the rates of a column of one block after and before an impact, instead of ``damping_time_s``.
         compressive_strength_mpa: stress at which elastic joints crush; ``None``: they do not crush.
         contact: ``"continuous"``: the whole joint carries stress, the default.
         contact_points: number of points that carry the stress of a joint, instead.
@@ -425,6 +427,7 @@ def simulate(
         damping_time_s,
         damping_ratio,
         damping_frequency_hz,
+        rebound_ratio,
         compressive_strength_mpa,
         contact,
         contact_points,

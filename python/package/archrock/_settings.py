@@ -41,6 +41,7 @@ class Settings(NamedTuple):
     damping_time_s: float | None = None
     damping_ratio: float | None = None
     damping_frequency_hz: float | None = None
+    rebound_ratio: float | None = None
     compressive_strength_mpa: float | None = None
     contact: str | None = None
     contact_points: int | None = None
@@ -90,6 +91,7 @@ class Settings(NamedTuple):
             damping_time_s=self.damping_time_s,
             damping_ratio=self.damping_ratio,
             damping_frequency_hz=self.damping_frequency_hz,
+            rebound_ratio=self.rebound_ratio,
             compressive_strength_mpa=self.compressive_strength_mpa,
             contact=self.contact,
             contact_points=self.contact_points,

@@ -800,6 +800,8 @@ pub struct ElasticSummary {
     pub largest_stress: Stress,
     /// Elastic energy at the end, in J.
     pub elastic_j: f64,
+    /// Damping time of the joints in s: given, or found for `rebound_ratio` or `damping_ratio`.
+    pub damping_time_s: f64,
     /// Energy dissipated by damping, in J.
     pub damped_j: f64,
     /// Energy dissipated by friction, in J.

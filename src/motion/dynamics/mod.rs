@@ -39,7 +39,7 @@ pub use self::peak::{NO_RISE, Peak};
 pub use self::recording::{History, MEMORY_BYTES, MemoryError, Recording, Samples};
 pub use self::repeatability::{OutcomeCount, Repeatability, Verdict};
 pub(crate) use self::row::clock::Settings;
-pub use self::row::error::{RowModelError, RowMotionError};
+pub use self::row::error::{ReboundError, RowModelError, RowMotionError};
 pub(crate) use self::row::input::MotionInput;
 pub(crate) use self::row::observer::MotionObserver;
 pub(crate) use self::row::stepper::Stepper;

@@ -25,7 +25,8 @@ impl Scenario {
         let vehicle = vehicle.and_then(|masonry| masonry.vehicle.as_ref());
         let axles = vehicle.into_iter().flat_map(unlikely_axles);
         let found = alone.flatten().chain(loads).chain(axles);
-        let others = [stiff_mortar(numbers), falling_hazard(numbers)];
+        let body = self.structure.column().and_then(odd_inertia);
+        let others = [stiff_mortar(numbers), falling_hazard(numbers), body];
         found.chain(others.into_iter().flatten()).collect()
     }
 }
@@ -39,6 +40,23 @@ fn width_exchanged(column: &Column) -> Option<Unlikely> {
             "the column is {height} m high and {width} m wide: are height and width exchanged?"
         );
         Unlikely::new("column.width_m", width_m, "m", warning)
+    })
+}
+
+/// Warning about a body whose radius of gyration is far from that of bodies of its size. That of a block is 0.58 times the distance of its centre from
+/// a toe, that of a ring or a hollow body at most about 1.
+fn odd_inertia(column: &Column) -> Option<Unlikely> {
+    let body = column.given?;
+    let reach_m = column.half_diagonal_m();
+    let gyration_m = (body.inertia_kg_m2 / body.mass_kg).sqrt();
+    let is_usual = (0.15..=1.5).contains(&(gyration_m / reach_m));
+    (!is_usual).then(|| {
+        let [gyration, reach] = [gyration_m, reach_m].map(plain);
+        let warning = format!(
+            "the radius of gyration of the body is {gyration} m, and its half diagonal about {reach} m: is the inertia in kg m2, about the centre of \
+             gravity?"
+        );
+        Unlikely::new("body.inertia_kg_m2", body.inertia_kg_m2, "kg m2", warning)
     })
 }
 

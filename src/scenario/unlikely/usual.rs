@@ -149,6 +149,9 @@ pub(super) const USUAL: &[Usual] = usual_numbers! {
     // Masonry towers are up to 100 m high and 20 m wide.
     "column.height_m", "the column measures", "m", 0.05..=100.0, LENGTHS;
     "column.width_m", "the width of the column is", "m", 0.01..=20.0, LENGTHS;
+    // From a vase to a monolith.
+    "body.mass_kg", "the mass of the body is", "kg", 5.0..=1e7, &[("t", 1e3)];
+    "body.centre_m", "the centre of gravity is at", "m", -20.0..=20.0, LENGTHS;
     "piers.height_m", "the height of {of} is", "m", 0.05..=100.0, LENGTHS;
     "piers.width_m", "the width of {of} is", "m", 0.02..=30.0, LENGTHS;
     "blocks.joints", "the structure measures", "m", 0.05..=200.0, LENGTHS;

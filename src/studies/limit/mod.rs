@@ -85,7 +85,10 @@ fn summary(scenario: &Scenario) -> Result<LimitSummary, StudyError> {
         summary.friction = Some(with_friction(&row()?, coefficient, summary.wall_behind)?);
     }
     summary.live = live;
-    summary.warnings = Warnings::new(scenario.unlikely_in(&Varied::default()), []);
+    summary.warnings = Warnings::new(
+        scenario.unlikely_in(&Varied::default()),
+        scenario.default_density_in_words(),
+    );
     Ok(summary)
 }
 
@@ -243,7 +246,10 @@ fn compute_moved_row(
         None => Ok(None),
     });
     let mut summary = LimitSummary::new(starts_g, mechanism, scenario.gravity_m_s2());
-    summary.warnings = Warnings::new(scenario.unlikely_in(&Varied::default()), []);
+    summary.warnings = Warnings::new(
+        scenario.unlikely_in(&Varied::default()),
+        scenario.default_density_in_words(),
+    );
     summary.capacity_g = Some(capacity.map(|found| found.as_ref().ok().copied().flatten()));
     summary.capacity_not_found =
         Some(capacity.map(|found| found.as_ref().err().map(ToString::to_string)));

@@ -6,6 +6,7 @@
 mod lane;
 mod model;
 mod motion;
+mod rebound;
 mod stepper;
 mod stillness;
 

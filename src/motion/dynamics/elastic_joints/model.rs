@@ -39,6 +39,8 @@ pub struct ElasticJoints {
     rest: (f64, Equilibrium),
     /// Gravity, and the energy barrier under it, computed at the first request.
     barrier_j: Arc<OnceLock<(f64, Option<f64>)>>,
+    /// Column of one block whose joints have the damping of this ratio of rates; `None` if the damping is given.
+    rebound: Option<(Column, f64)>,
     /// True in a study of many cases, with longer default steps.
     many_cases: bool,
     /// Factor on the longest step, for a repetition.
@@ -147,6 +149,7 @@ impl ElasticJoints {
             structure,
             rest: (gravity_m_s2, rest),
             barrier_j: Arc::default(),
+            rebound: None,
             many_cases: false,
             steps_times: 1.0,
             repeats_mirrored: false,
@@ -166,6 +169,7 @@ impl ElasticJoints {
         let settled = Self::standing(rigid, self.properties, structure, self.rest.0)?;
         Ok(Self {
             given_step_s: self.given_step_s,
+            rebound: self.rebound,
             ..settled
         })
     }
@@ -178,6 +182,13 @@ impl ElasticJoints {
     pub fn with_longest_step_s(mut self, step_s: f64) -> Result<Self, ArgumentError> {
         self.given_step_s = Some(require_within("longest_step_s", step_s, Self::STEP_S)?);
         Ok(self)
+    }
+
+    /// This model of a column, whose variations have the damping that gives this ratio of rates; `None` if they have the damping time of this model.
+    #[must_use]
+    pub fn keeping_rebound(mut self, column: &Column, rate_ratio: Option<f64>) -> Self {
+        self.rebound = rate_ratio.map(|rate_ratio| (column.clone(), rate_ratio));
+        self
     }
 
     /// Row of blocks.
@@ -272,7 +283,11 @@ impl ElasticJoints {
         others.map(variation).collect()
     }
 
-    fn varied(&self, properties: ElasticProperties) -> Result<Self, RowModelError> {
+    fn varied(&self, mut properties: ElasticProperties) -> Result<Self, RowModelError> {
+        if let Some((column, rate_ratio)) = &self.rebound {
+            properties.damping_time_s =
+                Self::damping_time_of_rebound_s(self.rest.0, column, &properties, *rate_ratio)?;
+        }
         let structure = ElasticStructure::of_row(self.row(), &properties)?;
         let structure = structure.on_supports(self.structure.supports);
         let structure = structure.with_wall(self.row(), self.structure.wall, &properties)?;
@@ -422,6 +437,7 @@ impl ElasticJoints {
             unreachable!("its joints are elastic");
         };
         let (joint, ratio) = rest.largest_eccentricity(&self.structure);
+        elastic.damping_time_s = self.structure.damping_time_s;
         elastic.rest_eccentricity_joint = joint;
         elastic.rest_eccentricity_ratio = ratio;
         // Stacks have no first mechanism with one degree of freedom and a known barrier, but the energy to push them over is known.

@@ -34,6 +34,38 @@ pub enum RowModelError {
     /// No equilibrium was found during the movement of the supports.
     #[error(transparent)]
     Settling(#[from] SettlingError),
+    /// No damping gives the rebound.
+    #[error("the rebound ratio {0}")]
+    Rebound(#[from] ReboundError),
+}
+
+/// Reason why no damping gives a rebound.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ReboundError {
+    /// The structure is not a column of one block.
+    #[error(
+        "is the rebound of one block, a [column] without drums, taper and ties, or a [body]: impacts of several blocks have no common ratio; give \
+         `damping_time_s`"
+    )]
+    SeveralBlocks,
+    /// The block slides before it rocks: it needs this coefficient of friction.
+    #[error(
+        "needs a `friction_coefficient` above {0:.3}: with less the block slides before it rocks"
+    )]
+    Slides(f64),
+    /// The nearest damping gives ratios from the first to the second, in impacts from both sides and with different rates.
+    #[error(
+        "does not hold for all impacts: with the nearest damping the ratio is from {0:.3} to {1:.3}, by the rate and the side of the impact; give another \
+         ratio or contact, or `damping_time_s`"
+    )]
+    Varies(f64, f64),
+    /// Damping gives ratios from the first to the second.
+    #[error(
+        "cannot be reached by damping: with this stiffness, contact and friction the ratio is from {0:.3} to {1:.3}; two contact points lose most, and \
+         continuous contact least"
+    )]
+    OutOfReach(f64, f64),
 }
 
 /// Reason why a motion of a row of blocks was not computed.

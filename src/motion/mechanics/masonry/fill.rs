@@ -1,16 +1,17 @@
 //! Fill above an arch, as weight and mass that move with the voussoir below.
 //!
-//! The fill vertically above the extrados of a voussoir, up to a level top, is part of its rigid block. Other effects of real fill are neglected:
+//! The fill vertically above the extrados of a voussoir, up to a level top, is part of its rigid block; that above the top of a pier may be
+//! part of its top block. Other effects of real fill are neglected:
 //! lateral pressure, spreading of loads, passive resistance against the haunches, and shear between columns that move differently.
 
 use nalgebra::Vector2;
 use serde::Serialize;
 
-use super::Material;
 use super::cut::{CutArch, top};
+use super::{Material, Piers};
 use crate::argument::{ArgumentError, require_within};
 use crate::mechanics::arch::MAGNITUDE;
-use crate::mechanics::{Block, Curve};
+use crate::mechanics::{Block, Curve, Row};
 
 /// Fill up to a level top.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -20,6 +21,9 @@ pub struct Fill {
     pub level: FillLevel,
     /// Density of the fill in kg/m3.
     pub density_kg_m3: f64,
+    /// True if it also lies on the tops of piers outside the extrados, as part of their top blocks.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub on_piers: bool,
 }
 
 /// Level of the top of the fill.
@@ -64,6 +68,42 @@ impl Fill {
         Ok(())
     }
 
+    /// Lays fill on the tops of the piers of a row whose first voussoir has this index. Returns the row, and all fill to draw. The extrados of an arch
+    /// leans inwards from its springings, so nothing is above such fill.
+    pub(super) fn lay_on(
+        &self,
+        mut row: Row,
+        (piers, first): (&Piers, usize),
+        arch: &CutArch,
+        depth_m: f64,
+    ) -> Result<(Row, Vec<FillColumn>), ArgumentError> {
+        let (joints, level_m) = (arch.joints(), self.level_m(arch)?);
+        let mut columns = self.outlines_for_drawing(arch)?;
+        columns.iter_mut().for_each(|(block, _)| *block += first);
+        let sides = [
+            (piers.left, -1.0, 0, first.wrapping_sub(1)),
+            (piers.right, 1.0, joints.len() - 1, first + arch.voussoirs()),
+        ];
+        for (pier, sign, springing, top) in sides {
+            let from = joints[springing].extrados_m;
+            let width_m = pier.map_or(0.0, |pier| pier.width_m);
+            let to_x = joints[springing].intrados_m.x + sign * width_m;
+            let is_covered = sign * (to_x - from.x) > 1e-9 * width_m && level_m > from.y;
+            if self.on_piers && is_covered {
+                let corners = [
+                    (from.x, from.y),
+                    (to_x, from.y),
+                    (to_x, level_m),
+                    (from.x, level_m),
+                ];
+                let corners_m = corners.map(|(x, y)| Vector2::new(x, y)).to_vec();
+                row = row.with_body(top, &Block::prism(&corners_m, depth_m, self.density_kg_m3));
+                columns.push((top, corners_m));
+            }
+        }
+        Ok((row, columns))
+    }
+
     /// Height of its top, in metres.
     pub(super) fn level_m(&self, arch: &CutArch) -> Result<f64, ArgumentError> {
         match self.level {
@@ -79,10 +119,7 @@ impl Fill {
     }
 
     /// Fill above each voussoir: index of the voussoir, and corners of a polygon to draw the fill.
-    pub(super) fn outlines_for_drawing(
-        &self,
-        arch: &CutArch,
-    ) -> Result<Vec<FillColumn>, ArgumentError> {
+    fn outlines_for_drawing(&self, arch: &CutArch) -> Result<Vec<FillColumn>, ArgumentError> {
         let level_m = self.level_m(arch)?;
         let outline = |piece: &Curve| {
             let parts = (0..=DRAWN_POINTS).map(|i| f64::from(i) / f64::from(DRAWN_POINTS));

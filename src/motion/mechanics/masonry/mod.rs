@@ -341,11 +341,13 @@ impl Masonry {
                 row = row.with_body(first + voussoir, extra);
             }
         }
-        let fill_m = fill.map_or(Ok(Vec::new()), |fill| fill.outlines_for_drawing(&arch));
+        let (row, fill_m) = match &fill {
+            Some(fill) => fill.lay_on(row, (&piers, first), &arch, material.depth_m),
+            None => Ok((row, Vec::new())),
+        }
+        .map_err(MasonryError::Fill)?;
         let (row, mut load_outlines) = place_loads(&loads, &arch, (&piers, first), row)?;
-        load_outlines.fill_m = fill_m.map_err(MasonryError::Fill)?;
-        let voussoirs = load_outlines.fill_m.iter_mut();
-        voussoirs.for_each(|(voussoir, _)| *voussoir += first);
+        load_outlines.fill_m = fill_m;
         Ok(Self {
             shape,
             piers,
