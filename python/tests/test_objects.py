@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 import archrock
-from archrock import Arch, Column, Event, Pulse, Record, Scenario, Structure, simulate
+from archrock import Arch, Body, Column, Event, Pulse, Record, Scenario, Structure, simulate
 
 from .conftest import ROOT, Program
 
@@ -77,6 +77,30 @@ def test_a_column_moves_away_from_the_wall_behind_it() -> None:
         Column(8.0, 0.6, back={"side": "right"}).chain()
     no_wall = Column(8.0, 0.6, drums=4, back={"side": "left", "height_m": 0.0})
     assert no_wall.limit() == Column(8.0, 0.6, drums=4).limit()
+
+
+def test_a_body_rocks_about_its_toes() -> None:
+    body = Body(mass_kg=1200.0, inertia_kg_m2=500.0, centre_m=np.array([0.05, 0.9]), toes_x_m=[-0.4, 0.4])
+    assert body.limit().right.acceleration_g == pytest.approx(0.35 / 0.9, rel=1e-12)
+    assert body.limit().left.acceleration_g == pytest.approx(0.45 / 0.9, rel=1e-12)
+    # The numbers of a column.
+    column = Column(4.0, 0.8)
+    mass_kg = 2000.0 * 4.0 * 0.8
+    same = Body(mass_kg=mass_kg, inertia_kg_m2=mass_kg * (16.0 + 0.64) / 12.0, centre_m=[0.0, 2.0], toes_x_m=[-0.4, 0.4])
+    push = Pulse.half_sine(amplitude_g=0.4, duration_s=0.5)
+    rocks = [simulate(one, push, duration_s=2.0).rotations for one in (column, same)]
+    assert rocks[0].any() and rocks[1] == pytest.approx(rocks[0], abs=1e-12)
+    with pytest.raises(ValueError, match="falls by itself"):
+        body.replace(centre_m=[0.5, 0.9])
+
+
+def test_a_wall_whose_top_is_held_bends() -> None:
+    wall = Column(3.5, 0.45, density_kg_m3=1900.0, top={"weight_n": 25e3, "x_m": -0.1})
+    limit = wall.limit()
+    assert limit.right.acceleration_g < limit.left.acceleration_g
+    assert eval(repr(wall), {"Column": Column}) == wall
+    with pytest.raises(ValueError, match="limit, capacity and verify|limit"):
+        simulate(wall, Pulse.half_sine(amplitude_g=0.4, duration_s=0.5))
 
 
 def test_a_column_carries_loads() -> None:
@@ -237,6 +261,7 @@ def test_a_record_of_velocities_equals_its_accelerations() -> None:
     [
         Arch(5.0, 0.15, 180.0, voussoirs=7),
         Column(4.0, 0.8, drums=3),
+        Body(mass_kg=1200.0, inertia_kg_m2=500.0, centre_m=[0.05, 0.9], toes_x_m=[-0.4, 0.4]),
         Pulse.gabor(0.5, 0.4, gamma=3.0, phase_deg=30.0),
         Record([0.0, 0.1, 0.2], [0.0, 1.0, 0.0], unit="m/s2", name="three", start_s=0.5),
     ],
@@ -252,7 +277,8 @@ def test_structures_grounds_and_scenarios_compare_by_value(described: Any) -> No
 
 
 def test_reprs_recreate_the_object(arch: Arch, pulse: Pulse) -> None:
-    for one in (arch, Column(4.0, 0.8, drums=2), pulse):
+    body = Body(mass_kg=1200.0, inertia_kg_m2=500.0, centre_m=[0.05, 0.9], toes_x_m=[-0.4, 0.4], load=[{"mass_kg": 100.0, "height_m": 0.5}])
+    for one in (arch, Column(4.0, 0.8, drums=2), body, pulse):
         assert eval(repr(one), vars(archrock)) == one
 
 

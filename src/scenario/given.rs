@@ -1,11 +1,11 @@
 //! The tables that were given, and the scenario written with their keys.
 
-use super::ReadOptions;
 use super::change::{is_count, is_replaced};
 use super::document::Entries;
 use super::model_kind::ModelKind;
 use super::prelude::*;
 use super::study_table::StudyTable;
+use super::{ReadOptions, Scenario, masonry};
 
 /// The tables of the text after all changes, and the way in which they were read. Any two values compare as equal, because scenarios are equal
 /// regardless of the keys that give their values.
@@ -143,4 +143,25 @@ fn shared_defaults(tables: &[&str], given: &Entries, resolved: &mut Entries) -> 
         }
     }
     shared
+}
+
+impl Scenario {
+    /// Condition that the density is the default, if static results depend on it: with fill, loads or ties.
+    pub(crate) fn default_density_in_words(&self) -> Option<String> {
+        let tables = &self.given.tables;
+        let given = |name: &str| tables.contains_key(name);
+        let beside = [
+            ("fill", "[fill]"),
+            ("load", "[[load]]"),
+            ("vehicle", "[vehicle]"),
+            ("tie", "[[tie]]"),
+        ];
+        let (_, beside) = beside.into_iter().find(|(name, _)| given(name))?;
+        let mut shapes = ["arch", "column"].into_iter().chain(masonry::SHAPES);
+        let shape = &tables[shapes.find(|shape| given(shape))?];
+        let (_, density_kg_m3) = self.structure.depth_and_density();
+        shape.get("density_kg_m3").is_none().then(|| {
+            format!("the density is the default, {} kg/m3: with {beside} the result depends on it, so give `density_kg_m3`", plain(density_kg_m3))
+        })
+    }
 }

@@ -261,8 +261,9 @@ impl Additions {
         (gravity_m_s2, unproved): (f64, bool),
     ) -> ReadResult<Masonry> {
         let key = shape.name();
-        if self.piers.are_none() && self.fill.is_some_and(|fill| fill.on_piers) {
-            return Err(table.reject_in(&["fill"], "on_piers", "needs [piers] on which it lies"));
+        if self.piers.are_none() && table.has_key_in("fill", "on_piers") {
+            let wrong = "has no effect without [piers]: leave it out";
+            return Err(table.reject_in(&["fill"], "on_piers", wrong));
         }
         let loads = load::place_loads_on_arch(table, &self.loads)?;
         let is_loaded = loads.iter().any(|load| load.live);
@@ -426,7 +427,7 @@ fn read_fill(table: &mut Table<'_>) -> ReadResult<Fill> {
     let height_m = table.optional("height_m", &MAGNITUDE);
     let above_crown_m = table.optional("above_crown_m", &within(&(0.0..=1e6)));
     let density_kg_m3 = table.read_required("density_kg_m3", &MAGNITUDE);
-    let on_piers = table.or("on_piers", &switch(), false);
+    let on_piers = table.or("on_piers", &switch(), true);
     table.apply_relations(&[OneOf(&["height_m", "above_crown_m"], None)])?;
     let level = height_m.map(FillLevel::AboveSpringing);
     Ok(Fill {

@@ -244,19 +244,6 @@ impl Scenario {
         self.simulation.gravity_m_s2
     }
 
-    /// Condition that the density is the default, if static results depend on it: with fill, loads or ties.
-    pub(crate) fn default_density_in_words(&self) -> Option<String> {
-        let tables = &self.given.tables;
-        let given = |name: &&str| tables.contains_key(*name);
-        let beside = ["fill", "load", "tie"].into_iter().find(given)?;
-        let mut shapes = ["arch", "column"].into_iter().chain(masonry::SHAPES);
-        let shape = &tables[shapes.find(given)?];
-        let (_, density_kg_m3) = self.structure.depth_and_density();
-        shape.get("density_kg_m3").is_none().then(|| {
-            format!("the density is the default, {} kg/m3: with [{beside}] the result depends on it, so give `density_kg_m3`", plain(density_kg_m3))
-        })
-    }
-
     /// Message about a table that the model of motion ignores; `None` if it ignores no table of the file.
     pub fn ignored_table(&self) -> Option<&'static str> {
         let message = self.motion.kind.ignored;
@@ -358,9 +345,8 @@ impl Scenario {
         if let Some(verify) = &verify {
             verify.check_demand(table, demand.as_ref())?;
         }
-        let ((mut motion, ignores_impact), (structure, ties)) = (motion?, built?);
-        let resolved = motion.options.for_structure(&structure, &motion.site);
-        motion.options = resolved.unwrap_or(motion.options);
+        let ((motion, ignores_impact), (structure, ties)) = (motion?, built?);
+        let motion = motion.for_structure(&structure);
         let shaken_s = ground.as_ref().map_or(0.0, |it| it.motion.end_s());
         let end_s = simulated.map(|it| it.end_s(shaken_s, structure.size_m()));
         if !(unproved && kind.has_joints) {

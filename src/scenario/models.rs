@@ -55,6 +55,13 @@ impl MotionModel {
             .unwrap_or(ImpactModel::MaxRestitution.into())
     }
 
+    /// This model with the options that follow from the structure.
+    pub(super) fn for_structure(mut self, structure: &Structure) -> Self {
+        let options = self.options.for_structure(structure, &self.site);
+        self.options = options.unwrap_or(self.options);
+        self
+    }
+
     /// Rejects options that do not fit a structure. `end_s` is the end of the history, if it is known.
     pub(super) fn check(
         &self,

@@ -558,7 +558,7 @@ fn invalid_ties_are_refused() {
     let said = Scenario::parse(&format!("{ring}{section}"), "s")
         .unwrap_err()
         .to_string();
-    assert!(said.contains("loads and ties need"), "{said}");
+    assert!(said.contains("vehicles and ties need"), "{said}");
     let none = |error: TieError, words: &str| assert!(error.to_string().contains(words), "{error}");
     none(TieError::NoBlock(3), "no block 4");
     none(TieError::OnSupports, "supports");

@@ -24,8 +24,10 @@ const HEIGHT: &str = "[demand.height]\nmodes = [{ gamma = 1.2857142857142858, ps
     sld = { t_s = 0.30, damping_percent = 5 }, slv = { t_s = 0.45, damping_percent = 10 }, \
     slc = { t_s = 0.60, damping_percent = 15 } }]\n";
 
+/// The arch on piers without fill on them, as other programs computed it.
 fn on_piers() -> String {
-    std::fs::read_to_string(scenarios().join("pointed-arch-on-piers.toml")).unwrap()
+    let text = std::fs::read_to_string(scenarios().join("pointed-arch-on-piers.toml")).unwrap();
+    text.replace("[fill]\n", "[fill]\non_piers = false\n")
 }
 
 fn check(text: &str) -> VerifySummary {

@@ -17,6 +17,7 @@ use archrock::scenario::Structure;
 use archrock::{MechanismModel, Pose, Scenario, Sway};
 use nalgebra::Vector2;
 use std::f64::consts::PI;
+use std::fs;
 
 /// Asserts a number to its last printed digit, which rounding may change.
 #[track_caller]
@@ -438,8 +439,10 @@ fn c8_7_1_2_1_8_a_spectrum_of_points_counts_up_to_its_largest_displacement() {
 
 // Mechanisms.
 
+/// The arch on piers without fill on them, as other programs computed it.
 fn on_piers() -> Scenario {
-    Scenario::read(&scenarios().join("pointed-arch-on-piers.toml")).unwrap()
+    let text = fs::read_to_string(scenarios().join("pointed-arch-on-piers.toml")).unwrap();
+    parsed(&text.replace("[fill]\n", "[fill]\non_piers = false\n"))
 }
 
 fn model(scenario: &Scenario) -> Box<dyn MechanismModel> {

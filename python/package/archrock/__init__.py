@@ -20,7 +20,7 @@ from ._ground import Ground, Pulse, Record
 from ._hinge import ChainLink, Hinge, Limit, Mechanism, Onset
 from ._history import Event, History, Impact
 from ._scenario import Scenario, simulate
-from ._structure import Arch, Column, Structure
+from ._structure import Arch, Body, Column, Structure
 from ._studies import (
     Capacity,
     Check,
@@ -56,6 +56,7 @@ __all__ = [
     "Capacity",
     "ChainLink",
     "Check",
+    "Body",
     "Column",
     "Ensemble",
     "Event",

@@ -884,14 +884,22 @@ class LimitLive(Summary, LimitLiveKeys):
     pass
 
 class LimitLiveWithoutSlidingKeys:
+    friction_coefficient: float | None
     multiplier: float | None
     weight_n: float | None
-    x_m: float | None
     towards: str | None
+    axles: list[LimitLiveWithoutSlidingAxles]
     mechanism: list[LimitFrictionRightMechanism]
     thrust_line_m: list[list[float] | None]
 
 class LimitLiveWithoutSliding(Summary, LimitLiveWithoutSlidingKeys):
+    pass
+
+class LimitLiveWithoutSlidingAxlesKeys:
+    x_m: float
+    on_arch_kg: float
+
+class LimitLiveWithoutSlidingAxles(Summary, LimitLiveWithoutSlidingAxlesKeys):
     pass
 
 class LimitLivePositionsKeys:

@@ -288,7 +288,7 @@ def _bytes(memory_gb: float) -> int:
 
 def _not_a_structure(given: object) -> TypeError:
     name = type(given).__name__
-    return TypeError(f"`structure` must be an Arch, a Column or a Structure, not {name}")
+    return TypeError(f"`structure` must be an Arch, a Column, a Body or a Structure, not {name}")
 
 
 def _not_a_ground(given: object) -> TypeError:

@@ -26,7 +26,7 @@ Model = Literal["four", "four_links", "free", "free_hinges", "elastic", "elastic
 class Structure(Described):
     """A structure of any shape that a scenario allows, with its tables as keyword arguments.
 
-    For circular arches and free-standing columns there are :class:`Arch` and :class:`Column`.
+    For circular arches, free-standing columns and rigid bodies there are :class:`Arch`, :class:`Column` and :class:`Body`.
 
     >>> pointed = Structure(
     ...     pointed_arch={"span_m": 4.0, "rise_m": 3.0, "thickness_m": 0.6, "voussoirs": 20},
@@ -151,6 +151,10 @@ class _OneTable(Structure):
         own = {**self._tables[self._table], **keys}
         return self._restored(plain_table({**self._tables, self._table: own}), self._files)
 
+    def __repr__(self) -> str:
+        beside = {table: keys for table, keys in self._tables.items() if table != self._table}
+        return f"{type(self).__name__}({arguments({**self._tables[self._table], **beside})})"
+
 
 class Arch(_OneTable):
     """A circular masonry arch of constant thickness.
@@ -213,9 +217,6 @@ class Arch(_OneTable):
             **others,
         }
         super().__init__(arch=arch)
-
-    def __repr__(self) -> str:
-        return f"{type(self).__name__}({arguments(self._tables['arch'])})"
 
 
 class Column(_OneTable):
@@ -287,6 +288,38 @@ class Column(_OneTable):
         }
         super().__init__(column=column, **({"load": load} if load else {}))
 
-    def __repr__(self) -> str:
-        beside = {table: keys for table, keys in self._tables.items() if table != "column"}
-        return f"{type(self).__name__}({arguments({**self._tables['column'], **beside})})"
+class Body(_OneTable):
+    """A rigid body by its numbers that rocks about two toes, such as a statue or a machine.
+
+    >>> statue = Body(mass_kg=1200.0, inertia_kg_m2=500.0, centre_m=[0.05, 0.9], toes_x_m=[-0.4, 0.4])
+
+    Args:
+        mass_kg: mass.
+        inertia_kg_m2: moment of inertia about the centre of gravity.
+        centre_m: centre of gravity, ``[x, y]`` to the right and upwards, from any point of the ground.
+        toes_x_m: the left and the right toe, to the right of that point.
+        load: tables ``[[load]]``, as of a :class:`Column`.
+
+    Raises:
+        ValueError: when a number is not allowed, with the library's explanation.
+    """
+
+    __slots__ = ()
+    _table: ClassVar[str] = "body"
+
+    mass_kg: float
+    inertia_kg_m2: float
+    centre_m: list[float]
+    toes_x_m: list[float]
+
+    def __init__(
+        self,
+        *,
+        mass_kg: float,
+        inertia_kg_m2: float,
+        centre_m: Any,
+        toes_x_m: Any,
+        load: Sequence[Mapping[str, Any]] | None = None,
+    ) -> None:
+        body = {"mass_kg": mass_kg, "inertia_kg_m2": inertia_kg_m2, "centre_m": centre_m, "toes_x_m": toes_x_m}
+        super().__init__(body=body, **({"load": load} if load else {}))

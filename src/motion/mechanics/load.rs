@@ -53,7 +53,7 @@ fn is_zero(x: &f64) -> bool {
     *x == 0.0
 }
 
-const fn is_true(moves: &bool) -> bool {
+pub(super) const fn is_true(moves: &bool) -> bool {
     *moves
 }
 

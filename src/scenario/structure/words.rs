@@ -162,7 +162,7 @@ fn masonry_words(masonry: &Masonry) -> Vec<String> {
             FillLevel::AboveCrown(height_m) => (height_m, "crown"),
         };
         let [height, density] = [height_m, fill.density_kg_m3].map(metres);
-        let piers = ["", ", also on the piers"][usize::from(fill.on_piers)];
+        let piers = [", none on the piers", ""][usize::from(fill.on_piers)];
         format!("fill to {height} m above the {line}, {density} kg/m3{piers}")
     }));
     parts.extend(masonry.loads.iter().map(|load| {

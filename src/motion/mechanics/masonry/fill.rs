@@ -1,8 +1,7 @@
-//! Fill above an arch, as weight and mass that move with the voussoir below.
+//! Fill above an arch and its piers, as weight and mass that move with the block below.
 //!
-//! The fill vertically above the extrados of a voussoir, up to a level top, is part of its rigid block; that above the top of a pier may be
-//! part of its top block. Other effects of real fill are neglected:
-//! lateral pressure, spreading of loads, passive resistance against the haunches, and shear between columns that move differently.
+//! The fill vertically above the extrados of a voussoir, up to a level top, is part of its rigid block; that above the top of a pier, outside the
+//! extrados, is part of its top block. Other effects of real fill are neglected: lateral pressure, spreading of loads, passive resistance against the haunches, and shear between columns that move differently.
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -11,6 +10,7 @@ use super::cut::{CutArch, top};
 use super::{Material, Piers};
 use crate::argument::{ArgumentError, require_within};
 use crate::mechanics::arch::MAGNITUDE;
+use crate::mechanics::load::is_true;
 use crate::mechanics::{Block, Curve, Row};
 
 /// Fill up to a level top.
@@ -22,7 +22,7 @@ pub struct Fill {
     /// Density of the fill in kg/m3.
     pub density_kg_m3: f64,
     /// True if it also lies on the tops of piers outside the extrados, as part of their top blocks.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[serde(skip_serializing_if = "is_true")]
     pub on_piers: bool,
 }
 
