@@ -135,8 +135,9 @@ impl LoadedExtrados {
         };
         let placed = combinations.into_iter().map(|sides| {
             let mut loads = loads.to_vec();
-            for (bit, index) in on_joints.iter().enumerate() {
-                let side = if sides >> bit & 1 == 0 { -1.0 } else { 1.0 };
+            for (bit, index) in (0_u32..).zip(&on_joints) {
+                let is_left = sides.checked_shr(bit).unwrap_or(sides) & 1 == 0;
+                let side = if is_left { -1.0 } else { 1.0 };
                 loads[*index].x_m += 2.0 * side * near_m;
             }
             loads
