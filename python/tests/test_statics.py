@@ -83,7 +83,6 @@ def test_simulations_raise_the_error_of_the_program(path: Path, program: Program
         threshold,
         overturning_map,
         ensemble,
-        verify,
         lambda of: compute_part(of, "map", (1, 2), tmp_path / "parts"),
     ]
     for move in moves:
@@ -91,6 +90,16 @@ def test_simulations_raise_the_error_of_the_program(path: Path, program: Program
             with pytest.raises(ValueError) as caught:
                 move(of)
             assert str(caught.value) == printed
+
+
+def test_a_check_needs_no_motion(path: Path, program: Program, tmp_path: Path) -> None:
+    scenario = Scenario.read(path)
+    if "demand" not in scenario.tables:
+        with pytest.raises(ValueError, match="demand|supports"):
+            verify(scenario)
+        return
+    assert program("verify", path, "--out", tmp_path / "o").returncode == 0
+    assert verify(scenario).files["verify.json"] == (tmp_path / "o" / "verify.json").read_bytes()
 
 
 def test_errors_that_concern_statics_are_raised_on_reading(tmp_path: Path) -> None:
