@@ -270,6 +270,33 @@ fn variations_keep_the_rebound() {
     assert!(due_s < 0.5 * of_stiffness(1e10).damping_time_s);
 }
 
+/// Continuous contact cannot lose as much energy as two points: as a variation it keeps the damping time, and has an outcome.
+#[test]
+fn variations_that_cannot_keep_the_rebound_keep_the_damping_time() {
+    let rigid = Rigid::block(2.0, 0.5);
+    let (scenario, own) = history(&format!(
+        "[column]\nheight_m = 2.0\nwidth_m = 0.5\n[elastic_joints]\nnormal_stiffness_gpa_m = 10\ncontact_points = 2\nfriction_coefficient = 0.7\n\
+         rebound_ratio = 0.93\n{}",
+        started(&rigid, 0.4)
+    ));
+    let damping_s = |details: &Details| match details {
+        Details::Elastic(_, elastic) => elastic.damping_time_s,
+        _ => panic!("elastic joints"),
+    };
+    let variations = scenario.variations().unwrap();
+    let names: Vec<&str> = variations.iter().map(|one| &*one.name).collect();
+    let continuous = variations
+        .iter()
+        .find(|one| one.name.contains("continuous"));
+    let continuous = continuous.unwrap_or_else(|| panic!("{names:?}"));
+    let model = continuous.model.as_ref().unwrap();
+    let summary = model.simulate(scenario.ground_motion(), &scenario.request(), None);
+    assert_eq!(
+        damping_s(&summary.unwrap().details),
+        damping_s(&own.summary.details)
+    );
+}
+
 #[test]
 fn a_ratio_that_damping_cannot_give_is_refused_with_its_reason() {
     let column = "[column]\nheight_m = 2.0\nwidth_m = 0.5\n";

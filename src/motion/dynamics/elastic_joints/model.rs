@@ -184,7 +184,8 @@ impl ElasticJoints {
         Ok(self)
     }
 
-    /// This model of a column, whose variations have the damping that gives this ratio of rates; `None` if they have the damping time of this model.
+    /// This model of a column, whose variations have the damping that gives this ratio of rates, if there is one; `None` if they have the damping time
+    /// of this model.
     #[must_use]
     pub fn keeping_rebound(mut self, column: &Column, rate_ratio: Option<f64>) -> Self {
         self.rebound = rate_ratio.map(|rate_ratio| (column.clone(), rate_ratio));
@@ -285,8 +286,16 @@ impl ElasticJoints {
 
     fn varied(&self, mut properties: ElasticProperties) -> Result<Self, RowModelError> {
         if let Some((column, rate_ratio)) = &self.rebound {
-            properties.damping_time_s =
-                Self::damping_time_of_rebound_s(self.rest.0, column, &properties, *rate_ratio)?;
+            // Where no damping gives the ratio, the damping time stays.
+            properties.damping_time_s = match Self::damping_time_of_rebound_s(
+                self.rest.0,
+                column,
+                &properties,
+                *rate_ratio,
+            ) {
+                Err(RowModelError::Rebound(_)) => properties.damping_time_s,
+                found => found?,
+            };
         }
         let structure = ElasticStructure::of_row(self.row(), &properties)?;
         let structure = structure.on_supports(self.structure.supports);
