@@ -146,17 +146,19 @@ fn shared_defaults(tables: &[&str], given: &Entries, resolved: &mut Entries) -> 
 }
 
 impl Scenario {
-    /// Condition that the density is the default, if static results depend on it: with fill, loads or ties.
+    /// Condition that the density is the default, if static results depend on it: with fill, loads, ties or a floor on the top.
     pub(crate) fn default_density_in_words(&self) -> Option<String> {
         let tables = &self.given.tables;
         let given = |name: &str| tables.contains_key(name);
+        let top = self.structure.held_column().map(|_| "[column.top]");
         let beside = [
             ("fill", "[fill]"),
             ("load", "[[load]]"),
             ("vehicle", "[vehicle]"),
             ("tie", "[[tie]]"),
         ];
-        let (_, beside) = beside.into_iter().find(|(name, _)| given(name))?;
+        let beside = beside.into_iter().find(|(name, _)| given(name));
+        let beside = top.or(beside.map(|(_, shown)| shown))?;
         let mut shapes = ["arch", "column"].into_iter().chain(masonry::SHAPES);
         let shape = &tables[shapes.find(|shape| given(shape))?];
         let (_, density_kg_m3) = self.structure.depth_and_density();

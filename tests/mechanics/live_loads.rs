@@ -6,6 +6,7 @@ use crate::common::program::{printed, refused};
 use crate::common::{Random, parsed};
 use crate::studies::limit::{Constraint, maximise};
 use archrock::Sway;
+use archrock::mechanics::masonry::MAX_AXLES;
 use archrock::scenario::Scenario;
 use archrock::studies::{LimitSummary, LiveAnswer, limit};
 use serde_json::Value;
@@ -511,6 +512,9 @@ fn wrong_live_loads_and_vehicles_are_refused() {
         let message = Scenario::parse(&text, "s.toml").unwrap_err().to_string();
         assert!(message.contains(due), "{due}: {message}");
     }
+    // The keys name the largest number of axles.
+    let keys = Scenario::schema()["properties"]["vehicle"].to_string();
+    assert!(keys.contains(&format!("at most {MAX_AXLES}")), "{keys}");
     let moved = format!("{arch}{LORRY}[free_hinges]\n[supports.left]\nspread_m = 0.01\n");
     let message = limit(&parsed(&moved)).unwrap_err().to_string();
     assert!(message.contains("leave [supports] out"), "{message}");

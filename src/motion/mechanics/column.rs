@@ -527,7 +527,7 @@ impl Column {
         drums.unwrap_or_else(|| vec![self.height_m])
     }
 
-    /// Whether it is not cut into drums.
+    /// Whether the column is one block, without drums.
     pub(super) fn is_one_block(&self) -> bool {
         self.drum_heights_m().len() == 1
     }

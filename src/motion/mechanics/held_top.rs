@@ -50,7 +50,7 @@ pub enum HeldTopError {
     Locks(#[from] CapacityError),
     /// The forces of its ties change.
     #[error(
-        "the forces of ties change as the wall bends, which is not followed: leave the ties out, or run `limit`"
+        "the forces of ties change as the wall bends, and are not followed: leave the ties out, or run `limit`"
     )]
     Ties,
 }
@@ -438,7 +438,7 @@ impl HeldMechanism {
         let steps = (1_u32..).map(|step| f64::from(step) * STEP_RAD);
         let mut steps = steps.take_while(|q_rad| *q_rad < FRAC_PI_2);
         match steps.find(|q_rad| resists(*q_rad) != Some(true)) {
-            // Curves also need positions just before the start, which a hinge at the top has not.
+            // Curves also need positions just before the start; with a hinge at the top there are none.
             Some(q_rad) if resists(q_rad) == Some(false) && self.bent(-1e-4 * q_rad).is_some() => {
                 let falls = |q_rad| resists(q_rad) == Some(false);
                 Ok(bisect(q_rad - STEP_RAD, q_rad, Width::Rounding, falls).1)

@@ -186,7 +186,7 @@ impl Structure {
         Some(wall.side)
     }
 
-    /// Arch with live loads or a vehicle, which limit analysis alone computes; `None` for other structures.
+    /// Arch under live loads or a vehicle; `None` for other structures.
     pub(crate) fn under_live_loads(&self) -> Option<&Masonry> {
         match self {
             Self::Masonry(masonry) => Some(&**masonry).filter(|it| it.has_live_loads()),

@@ -43,8 +43,8 @@ fn width_exchanged(column: &Column) -> Option<Unlikely> {
     })
 }
 
-/// Warning about a body whose radius of gyration is far from that of bodies of its size. That of a block is 0.58 times the distance of its centre from
-/// a toe, that of a ring or a hollow body at most about 1.
+/// Warning about a body whose radius of gyration is far from that of bodies of its size. A block has 0.58 times the distance of its centre from a
+/// toe, a ring or a hollow body at most about 1.
 fn odd_inertia(column: &Column) -> Option<Unlikely> {
     let body = column.given?;
     let reach_m = column.half_diagonal_m();

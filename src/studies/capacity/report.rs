@@ -122,7 +122,10 @@ pub fn report(
             side.map(|side| CapacitySide::of(side, scenario.gravity_m_s2()))
         }),
         masses,
-        warnings: Warnings::new(scenario.unlikely_in(&Varied::default()), []),
+        warnings: Warnings::new(
+            scenario.unlikely_in(&Varied::default()),
+            scenario.default_density_in_words(),
+        ),
         scenario: scenario.to_json(),
     };
     let title = scenario.title.as_deref().unwrap_or("Capacity");

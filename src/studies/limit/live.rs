@@ -19,7 +19,7 @@ const STEPS: usize = 200;
 const PRINTED: usize = 12;
 /// Largest multiplier in pictures and words, over the least one.
 const MOST_SHOWN: f64 = 5.0;
-/// Number of times that the worst position of a vehicle is sought again on steps a tenth as long.
+/// Number of refinements of the worst position of a vehicle, each with steps a tenth as long.
 const FINER: i32 = 5;
 
 /// Collapse under live loads, or under a vehicle at its worst position.
@@ -74,7 +74,8 @@ pub struct VehiclePosition {
     pub x_m: f64,
     /// Factor on the axles at which the structure collapses without sliding; null if it carries any factor.
     pub multiplier: Option<f64>,
-    /// The same with the coefficient of friction of the scenario; null if it carries any factor, or joints do not slip.
+    /// Factor on the axles at which the structure collapses with the coefficient of friction of the scenario; null if it carries any factor, or joints
+    /// do not slip.
     pub multiplier_with_friction: Option<f64>,
 }
 
@@ -86,7 +87,7 @@ struct Loaded<'m> {
 }
 
 impl Loaded<'_> {
-    /// Computes the collapse under live loads, the least for loads on joints.
+    /// Computes the collapse under live loads. Loads on joints stand on the worse side.
     fn collapse(
         &self,
         loads: &[PlacedLoad],
@@ -311,7 +312,7 @@ impl LiveLimit {
         both
     }
 
-    /// Returns the structure with the axles of its vehicle at the worst position in place of the vehicle; what they spread over beyond the arch is cut off.
+    /// Returns the structure with the axles at their worst position as live loads, in place of the vehicle. Patches end at the ends of the arch.
     pub(super) fn loaded(&self, structure: &Structure) -> Structure {
         let worst = self.governing();
         let on_axles = |masonry: &Masonry| {
@@ -345,7 +346,7 @@ impl LiveLimit {
         }
     }
 
-    /// Returns the answers in words: of each the factor, then its place and its limits.
+    /// Returns the answers in words: of each the factor, then the axles and the conditions.
     pub(super) fn in_words(&self) -> Vec<Vec<String>> {
         let answers = self.answers().into_iter();
         answers.map(|answer| self.answer_in_words(answer)).collect()
@@ -401,7 +402,8 @@ impl LiveLimit {
         answer.mechanism.iter().map(joint_in_words)
     }
 
-    /// Returns some positions of the vehicle on its worst way and the worst one, each with its factors, as a table with a heading; empty without a worst one.
+    /// Returns a table with a heading: positions of the vehicle in its worst direction, with their factors. The position nearest to the worst one is
+    /// among them. Empty if the structure carries any factor.
     pub(super) fn positions_in_words(&self) -> Vec<String> {
         let worst = self.governing();
         let place = worst.towards.zip(worst.multiplier).zip(worst.axles.first());
@@ -494,7 +496,7 @@ impl LiveLimit {
             });
         let labels = [
             "position of the front axle (m)",
-            "factor at collapse, up to 5 times the least",
+            &*format!("factor at collapse, up to {MOST_SHOWN} times the least"),
         ];
         Chart::around(figure, 330.0, labels, curves.collect()).draw(figure, title)
     }

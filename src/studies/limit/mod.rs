@@ -47,17 +47,28 @@ impl From<FrictionError> for StudyError {
 }
 
 fn summary(scenario: &Scenario) -> Result<LimitSummary, StudyError> {
+    Ok(LimitSummary {
+        live: live_limit(scenario)?,
+        warnings: Warnings::new(
+            scenario.unlikely_in(&Varied::default()),
+            scenario.default_density_in_words(),
+        ),
+        ..summary_of_pushes(scenario)?
+    })
+}
+
+/// Summary without live loads and warnings.
+fn summary_of_pushes(scenario: &Scenario) -> Result<LimitSummary, StudyError> {
+    if let Some(mechanisms) = held_mechanisms(&scenario.structure)? {
+        return Ok(summary_of_held_top(scenario, &mechanisms));
+    }
     let row = || {
         let row = scenario.structure.row().map_err(RowModelError::from);
         row.map_err(StudyError::scenario)
     };
     let coefficient = scenario.motion.options.friction_coefficient();
-    let live = live_limit(scenario)?;
     if let Some(movements) = scenario.motion.supports() {
         return compute_moved_row(scenario, &row()?, &movements, coefficient);
-    }
-    if let Some(mechanisms) = held_mechanisms(&scenario.structure)? {
-        return Ok(summary_of_held_top(scenario, &mechanisms));
     }
     let mut summary = match scenario.row().map_err(StudyError::scenario)? {
         Some(row) => compute_row(scenario, &row).map_err(StudyError::scenario)?,
@@ -84,11 +95,6 @@ fn summary(scenario: &Scenario) -> Result<LimitSummary, StudyError> {
     if let Some(coefficient) = coefficient {
         summary.friction = Some(with_friction(&row()?, coefficient, summary.wall_behind)?);
     }
-    summary.live = live;
-    summary.warnings = Warnings::new(
-        scenario.unlikely_in(&Varied::default()),
-        scenario.default_density_in_words(),
-    );
     Ok(summary)
 }
 
@@ -114,7 +120,6 @@ fn summary_of_held_top(scenario: &Scenario, mechanisms: &Sides<HeldMechanism>) -
         mechanism_without: None,
     });
     summary.tie_places = scenario.structure.tie_places();
-    summary.warnings = Warnings::new(scenario.unlikely_in(&Varied::default()), []);
     summary
 }
 
@@ -246,10 +251,6 @@ fn compute_moved_row(
         None => Ok(None),
     });
     let mut summary = LimitSummary::new(starts_g, mechanism, scenario.gravity_m_s2());
-    summary.warnings = Warnings::new(
-        scenario.unlikely_in(&Varied::default()),
-        scenario.default_density_in_words(),
-    );
     summary.capacity_g = Some(capacity.map(|found| found.as_ref().ok().copied().flatten()));
     summary.capacity_not_found =
         Some(capacity.map(|found| found.as_ref().err().map(ToString::to_string)));

@@ -91,14 +91,14 @@ impl ElasticJoints {
         // The weakest damping that holds allows the longest steps.
         for time_s in times_s {
             let before = found.last().copied();
-            let mut more = rocking.with(time_s, PEAKS);
+            let mut more = rocking.damped(time_s, PEAKS);
             let mut tried = vec![more];
             let mut less = before.filter(|before| error(before) * error(&more) < 0.0);
             while let Some(low) = less
                 && tried.len() <= BISECTIONS
                 && !tried.iter().any(|one| holds(one, FINE * accepted))
             {
-                let middle = rocking.with((low.time_s * more.time_s).sqrt(), PEAKS);
+                let middle = rocking.damped((low.time_s * more.time_s).sqrt(), PEAKS);
                 tried.push(middle);
                 match error(&middle) * error(&low) > 0.0 {
                     true => less = Some(middle),
@@ -107,7 +107,7 @@ impl ElasticJoints {
             }
             let fits = tried.iter().filter(|one| holds(one, accepted));
             if let Some(one) = nearest(&mut fits.copied()) {
-                let checked = rocking.with(one.time_s, CHECKED_PEAKS);
+                let checked = rocking.damped(one.time_s, CHECKED_PEAKS);
                 match holds(&checked, MOST_CHECKED_ERROR * rate_ratio) {
                     true if holds(&one, 0.5 * accepted) => return Ok(one.time_s),
                     true => best = nearest(&mut best.into_iter().chain([one])),
@@ -171,7 +171,8 @@ impl Rocking {
         })
     }
 
-    fn with(&mut self, time_s: f64, peaks: [f64; 3]) -> Damped {
+    /// Ratios of rates that a damping time gives, for first peaks of these parts of the rotation that overturns the block.
+    fn damped(&mut self, time_s: f64, peaks: [f64; 3]) -> Damped {
         self.structure.damping_time_s = time_s;
         let sways = self.sways.iter();
         let ratios: Vec<f64> = sways

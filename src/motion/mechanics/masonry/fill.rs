@@ -1,7 +1,8 @@
 //! Fill above an arch and its piers, as weight and mass that move with the block below.
 //!
 //! The fill vertically above the extrados of a voussoir, up to a level top, is part of its rigid block; that above the top of a pier, outside the
-//! extrados, is part of its top block. Other effects of real fill are neglected: lateral pressure, spreading of loads, passive resistance against the haunches, and shear between columns that move differently.
+//! extrados, is part of its top block. Other effects of real fill are neglected: lateral pressure, spreading of loads, passive resistance against the
+//! haunches, and shear between columns that move differently.
 
 use nalgebra::Vector2;
 use serde::Serialize;

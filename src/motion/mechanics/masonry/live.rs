@@ -10,9 +10,9 @@ use crate::mechanics::{PlacedLoad, Supports, Sway};
 
 /// Largest number of axles of a vehicle.
 pub const MAX_AXLES: usize = 20;
-/// Distance from a joint, and width of a patch, over the distance of the ends of the arch, up to which a load is on the joint, and acts at a point.
+/// Tolerance over the length of the arch: a load at this distance from a joint stands on it, and a patch of this width is a point.
 const ON_JOINT: f64 = 1e-9;
-/// Largest number of loads on joints that are placed on either side of each.
+/// Largest number of loads on joints for which all combinations of sides are tried.
 const MOST_ON_JOINTS: usize = 8;
 
 named! {
@@ -89,7 +89,7 @@ impl Masonry {
         Ok(self)
     }
 
-    /// Whether it has live loads or a vehicle, which limit analysis alone computes.
+    /// Whether live loads or a vehicle act on it. Only limit analysis computes them.
     pub fn has_live_loads(&self) -> bool {
         self.vehicle.is_some() || self.loads.iter().any(|load| load.live)
     }
@@ -116,7 +116,8 @@ impl LoadedExtrados {
         joints.map(|joint| joint.extrados_m.x).collect()
     }
 
-    /// These loads, with those that act at points on joints on either side of their joint: all combinations, or, of many such loads, all on one side.
+    /// All combinations of these loads in which each point load on a joint stands on one side of it. Of more than eight such loads, all stand on the
+    /// left side or all on the right one.
     pub fn beside_joints(&self, loads: &[PlacedLoad]) -> Vec<Vec<PlacedLoad>> {
         let joints_m = self.joints_m();
         let near_m = ON_JOINT * (joints_m[joints_m.len() - 1] - joints_m[0]);
@@ -145,7 +146,7 @@ impl LoadedExtrados {
         placed.collect()
     }
 
-    /// Live loads as weights on the blocks of the row. What is beyond the ends of the arch is left out.
+    /// Live loads as weights on the blocks of the row. Parts beyond the ends of the arch are left out.
     pub fn weights(&self, loads: &[PlacedLoad]) -> Vec<Weight> {
         let live = loads.iter().filter(|load| load.live);
         let bodies = live.flat_map(|load| {

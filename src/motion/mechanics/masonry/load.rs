@@ -47,7 +47,7 @@ impl PlacedLoad {
         }
     }
 
-    /// The mass as bodies, each with the voussoir that carries it. What extends beyond the ends of the arch is left out.
+    /// The mass as bodies, each with the voussoir that carries it. Parts beyond the ends of the arch are left out.
     pub(super) fn bodies(&self, arch: &CutArch) -> Vec<(usize, Block)> {
         let (from_x, to_x) = (self.x_m - 0.5 * self.width_m, self.x_m + 0.5 * self.width_m);
         let mut bodies: Vec<(usize, Block)> = Vec::new();
