@@ -446,4 +446,21 @@ fn a_default_density_is_named_where_the_push_depends_on_it() {
         );
         assert!((limit(&given).0 / bare_g - 1.0).abs() < 1e-9);
     }
+    // A floor on a held top, in limit and capacity.
+    let folder = tempfile::tempdir().unwrap();
+    let wall = "[column]\nheight_m = 3.5\nwidth_m = 0.45\n[column.top]\nweight_n = 25e3\n";
+    let named = "the density is the default, 2000 kg/m3: with [column.top]";
+    for (text, is_named) in [
+        (wall.to_owned(), true),
+        (
+            wall.replace("0.45\n", "0.45\ndensity_kg_m3 = 2000\n"),
+            false,
+        ),
+    ] {
+        fs::write(folder.path().join("s.toml"), text).unwrap();
+        for command in ["limit", "capacity"] {
+            let words = stdout(&archrock(folder.path(), &[command, "s.toml"]));
+            assert_eq!(words.contains(named), is_named, "{command}: {words}");
+        }
+    }
 }

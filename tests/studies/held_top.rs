@@ -276,7 +276,7 @@ fn what_a_held_top_excludes_is_refused_with_its_remedy() {
     let wrong = |text: String, words: &[&str]| refuse(&["limit"], &text, words);
     wrong(
         format!("{WALL}{TOP}[column.back]\nside = 'left'\n"),
-        &["cannot be combined with [column.back]"],
+        &["`top` cannot be combined with [column.back]"],
     );
     wrong(format!("{WALL}[column.top]\nx_m = 0.1\n"), &["weight_n"]);
     wrong(

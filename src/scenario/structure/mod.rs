@@ -470,7 +470,7 @@ fn read_column(table: &mut Table<'_>, has_joints: bool) -> ReadResult<(Column, B
     }
     table.check_relations(&[
         AtMostOne(&["drums", "drum_heights_m"], GIVE_ONE),
-        Excludes("top", "back", held_top::NO_WALL),
+        Excludes("back", "top", held_top::NO_WALL),
     ])?;
     let mut column = Column::new(height_m, width_m)
         .and_then(|column| column.with_depth_m(depth_m))
