@@ -496,7 +496,7 @@ impl LiveLimit {
             });
         let labels = [
             "position of the front axle (m)",
-            &*format!("factor at collapse, up to {MOST_SHOWN} times the least"),
+            &*format!("factor at collapse, up to {MOST_SHOWN} × least"),
         ];
         Chart::around(figure, 330.0, labels, curves.collect()).draw(figure, title)
     }
